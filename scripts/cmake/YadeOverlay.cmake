@@ -1,0 +1,17 @@
+# GPL v2 or later, see LICENSE.
+# At install time, makes DDEM_OVERLAY a YADE prefix of symbolic links to the installed YADE, so that the plugin can be added to it without rights
+# on YADE's own directories.  YADE looks there when YADE_PREFIX names it.
+file(TO_CMAKE_PATH "${DDEM_OVERLAY}" overlay)
+install(CODE "
+	set(stock \"${YADE_LIBRARY_DIR}\")
+	set(mine \"${overlay}/${YADE_LIBRARY_SUBDIR}\")
+	foreach(folder IN ITEMS \"\" /py /py/yade)
+		file(MAKE_DIRECTORY \"\${mine}\${folder}\")
+		file(GLOB entries RELATIVE \"\${stock}\${folder}\" \"\${stock}\${folder}/*\")
+		list(REMOVE_ITEM entries py yade ddem __pycache__ libpkg_ddem.so ddem_classes.so)
+		foreach(entry IN LISTS entries)
+			file(CREATE_LINK \"\${stock}\${folder}/\${entry}\" \"\${mine}\${folder}/\${entry}\" SYMBOLIC)
+		endforeach()
+	endforeach()
+	message(STATUS \"Overlay prefix of links to \${stock}: ${overlay}\")
+" COMPONENT classes)
