@@ -72,5 +72,13 @@ namespace ddem {
 		return { xx * a.xx + xy * a.xy, yx * a.xy + yy * a.yy, a.zz * b.zz * a.zz, xx * a.xy + xy * a.yy };
 	}
 
+	//! The tensor R.a.R^T, R the rotation about z by `angle` [rad]: components in axes against which the old ones stand turned by `angle`.
+	inline PlaneTensor rotated(const PlaneTensor& a, double angle)
+	{
+		const double c = std::cos(2 * angle), s = std::sin(2 * angle), mean = 0.5 * (a.xx + a.yy), half = 0.5 * (a.xx - a.yy);
+		const double along = c * half - s * a.xy;
+		return { mean + along, mean - along, a.zz, s * half + c * a.xy };
+	}
+
 } // namespace ddem
 } // namespace yade

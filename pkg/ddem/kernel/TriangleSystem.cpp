@@ -279,6 +279,21 @@ const TriangleGroup& TriangleSystem::groupOf(std::size_t i) const
 	return *(std::upper_bound(group.begin(), group.end(), i, [](std::size_t value, const TriangleGroup& g) { return value < g.end; }));
 }
 
+const ConcreteState* TriangleSystem::concreteStates(std::size_t i) const
+{
+	const TriangleGroup& g = groupOf(i);
+	return g.law == TriangleGroup::Law::Concrete ? &concreteState[stateIndex(g, i)] : nullptr;
+}
+
+std::array<double, 3> TriangleSystem::subElementDamage(std::size_t i) const
+{
+	std::array<double, 3> result {};
+	if (const ConcreteState* state = concreteStates(i))
+		for (std::size_t k = 0; k < 3; k++)
+			result[k] = damageRatio(concrete[groupOf(i).concrete].parameters, state[k]);
+	return result;
+}
+
 std::array<PlaneTensor, 3> TriangleSystem::strain(std::size_t i) const
 {
 	const TriangleReference<double> ref    = reference(i);

@@ -127,6 +127,10 @@ public:
 	/// Rotation of the element's frame [rad]; unwrapped only where cores rotate.
 	double               frameAngle(std::size_t triangle) const;
 	const TriangleGroup& groupOf(std::size_t triangle) const;
+	/// The three sub-element states of a concrete triangle; null for an elastic one.
+	const ConcreteState* concreteStates(std::size_t triangle) const;
+	/// Damage η/η_max of the three sub-elements [-]; 0 in elastic triangles.
+	std::array<double, 3> subElementDamage(std::size_t triangle) const;
 	/// Index in concreteState of a triangle's first sub-element; its group must be concrete.
 	static std::size_t stateIndex(const TriangleGroup& g, std::size_t triangle) { return g.firstState + 3 * (triangle - g.begin); }
 
