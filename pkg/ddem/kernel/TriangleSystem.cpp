@@ -232,6 +232,28 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 	return energy;
 }
 
+std::vector<double> TriangleSystem::bookState() const
+{
+	std::vector<double> saved { pending.gravityWork, pending.externalWork, pending.dampingLoss };
+	for (const auto* list : { &nodeConstraint, &coreConstraint, &spinConstraint })
+		for (const auto& c : *list)
+			saved.push_back(c.velocity);
+	return saved;
+}
+
+void TriangleSystem::restoreBook(const std::vector<double>& saved)
+{
+	if (saved.size() != 3 + nodeConstraint.size() + coreConstraint.size() + spinConstraint.size())
+		throw std::invalid_argument("the saved energy book does not fit the blocked degrees of freedom of the scene");
+	pending.gravityWork  = saved[0];
+	pending.externalWork = saved[1];
+	pending.dampingLoss  = saved[2];
+	auto from            = saved.begin() + 3;
+	for (auto* list : { &nodeConstraint, &coreConstraint, &spinConstraint })
+		for (auto& c : *list)
+			c.velocity = *from++;
+}
+
 TriangleSystem::Place TriangleSystem::firstNotFinite() const
 {
 	for (const Points* points : { &node, &core })

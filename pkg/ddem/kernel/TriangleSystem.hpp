@@ -5,6 +5,7 @@
 #include <pkg/ddem/kernel/ConcreteLaw.hpp>
 #include <pkg/ddem/kernel/ElementFrame.hpp>
 #include <pkg/ddem/kernel/LumpedMass.hpp>
+#include <pkg/ddem/kernel/TensorRotation.hpp>
 
 #include <array>
 #include <cstddef>
@@ -110,6 +111,10 @@ public:
 
 	/** One explicit step. \throws std::domain_error if a velocity is not finite (see firstNotFinite). */
 	StepEnergy step(const StepSettings& settings);
+
+	/// What the energy book needs to go on after a restart, and its inverse. \throws std::invalid_argument if the size does not fit.
+	std::vector<double> bookState() const;
+	void                restoreBook(const std::vector<double>& saved);
 
 	/// The first node or core whose state is not finite.
 	struct Place {

@@ -1,0 +1,392 @@
+// GPL v2 or later, see LICENSE.
+#include <pkg/ddem/DeformableAssembly.hpp>
+
+#include <pkg/ddem/DeformableNode.hpp>
+#include <pkg/ddem/kernel/StableStep.hpp>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+namespace yade {
+
+namespace {
+
+	constexpr unsigned planeDofs = State::DOF_X | State::DOF_Y, coreDofs = planeDofs | State::DOF_RZ;
+
+	std::string describe(const Body& b, const Vector3r& place)
+	{
+		std::ostringstream text;
+		text << "body " << b.getId() << " at (" << place[0] << ", " << place[1] << ") m";
+		return text.str();
+	}
+
+	[[noreturn]] void reject(const Body& b, const std::string& why) { throw std::invalid_argument(describe(b, b.state->refPos) + ": " + why); }
+
+	void requireFinite(const Body& b)
+	{
+		const State& s = *b.state;
+		if (!s.pos.allFinite() || !s.refPos.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.ori.coeffs().allFinite())
+			reject(b, "position, velocity or orientation is not finite; set State.pos, State.refPos, State.vel to numbers [m, m/s]");
+	}
+
+	Real angleOf(const Quaternionr& q) { return 2 * std::atan2(q.z(), q.w()); }
+
+	Quaternionr turnBy(Real angle) { return Quaternionr(std::cos(angle / 2), 0, 0, std::sin(angle / 2)); }
+
+	const DeformableTriangle& triangleShape(const Body& b) { return static_cast<const DeformableTriangle&>(*b.shape); }
+
+	const DeformableElastMat& materialOf(const Body& b)
+	{
+		const auto* material = dynamic_cast<const DeformableElastMat*>(b.material.get());
+		if (!material)
+			reject(b, "a DeformableTriangle needs a DeformableElastMat or ConcreteDamageMat, not " + (b.material ? b.material->getClassName() : std::string("no material")));
+		material->validate();
+		return *material;
+	}
+
+	ddem::PlaneTensor initialDamage(const Body& b)
+	{
+		const Matrix3r& m = triangleShape(b).initialDamage;
+		if (!m.allFinite() || m(0, 2) != 0 || m(1, 2) != 0 || m(2, 0) != 0 || m(2, 1) != 0 || m(0, 1) != m(1, 0))
+			reject(b, "initialDamage must be a symmetric tensor [-] with zero xz and yz components");
+		const Real mean = (m(0, 0) + m(1, 1)) / 2, radius = std::hypot((m(0, 0) - m(1, 1)) / 2, m(0, 1));
+		if (mean - radius < -1e-12 * (mean + radius) || m(2, 2) < 0) reject(b, "initialDamage has a negative principal value; damage is zero or positive");
+		return { m(0, 0), m(1, 1), m(2, 2), m(0, 1) };
+	}
+
+	bool sameGroup(const Body& a, const Body& b) { return a.material == b.material && triangleShape(a).thickness == triangleShape(b).thickness; }
+
+	/// Rows by body id, for state to be carried over.
+	std::map<Body::id_t, std::size_t> rowsById(const std::vector<shared_ptr<Body>>& bodies)
+	{
+		std::map<Body::id_t, std::size_t> rows;
+		for (std::size_t i = 0; i < bodies.size(); i++)
+			rows[bodies[i]->getId()] = i;
+		return rows;
+	}
+
+} // namespace
+
+DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTreatment rotation, Real vertexShare, const DeformableAssembly& previous)
+{
+	DeformableAssembly made;
+	made.sceneBodies = scene.bodies->size();
+	std::vector<std::int32_t> nodeRow(scene.bodies->size(), -1);
+	for (const auto& b : *scene.bodies) {
+		if (!b || !b->shape) continue;
+		if (dynamic_cast<const DeformableNode*>(b->shape.get())) {
+			nodeRow[std::size_t(b->getId())] = std::int32_t(made.nodes.size());
+			made.nodes.push_back(b);
+		} else if (dynamic_cast<const DeformableTriangle*>(b->shape.get()))
+			made.cores.push_back(b);
+	}
+	if (made.cores.empty()) throw std::invalid_argument("DeformableEngine: the scene has no DeformableTriangle; append a mesh first (ddem.append), or remove the engine");
+	for (const auto& b : made.nodes)
+		requireFinite(*b);
+
+	made.system                  = shared_ptr<ddem::TriangleSystem>(new ddem::TriangleSystem);
+	ddem::TriangleSystem& s      = *made.system;
+	const std::size_t     nCores = made.cores.size();
+	s.rotation                   = rotation;
+	s.node.resize(made.nodes.size());
+	s.core.resize(nCores);
+	if (rotation == ddem::RotationTreatment::Cosserat) s.spin.resize(nCores);
+	std::map<const Material*, std::size_t> concreteOf;
+	std::set<std::array<std::int32_t, 3>>  known;
+	for (std::size_t i = 0; i < nCores; i++) {
+		const Body&               b        = *made.cores[i];
+		const DeformableTriangle& shape    = triangleShape(b);
+		const DeformableElastMat& material = materialOf(b);
+		requireFinite(b);
+		std::array<std::int32_t, 3>               rows;
+		std::array<ddem::PlaneVector<double>, 3> place;
+		for (int e = 0; e < 3; e++) {
+			const int id = shape.nodes[e];
+			if (id < 0 || std::size_t(id) >= nodeRow.size() || nodeRow[std::size_t(id)] < 0)
+				reject(b, "its node body " + std::to_string(id) + " is missing or has no DeformableNode shape; DeformableTriangle.nodes needs three ids of node bodies");
+			rows[std::size_t(e)]  = nodeRow[std::size_t(id)];
+			const Vector3r& p     = made.nodes[std::size_t(rows[std::size_t(e)])]->state->refPos;
+			place[std::size_t(e)] = { p[0], p[1] };
+		}
+		try {
+			const auto             reference = ddem::makeReference(place);
+			const ddem::LumpedMass mass      = ddem::lumpMass(reference, material.density, shape.thickness, vertexShare, rotation);
+			s.addTriangle(rows, reference);
+			for (const auto row : rows)
+				s.node.mass[std::size_t(row)] += mass.vertex;
+			s.core.mass[i] = mass.core;
+			if (rotation == ddem::RotationTreatment::Cosserat) s.spin.inertia[i] = mass.inertia;
+			const ddem::TriangleStiffness stiffness { material.bulk(), material.shear(), material.rotationStiffness };
+			made.restStep.push_back(2 / ddem::highestFrequency(reference, stiffness, shape.thickness, mass, rotation));
+		} catch (const std::invalid_argument& error) {
+			reject(b, error.what());
+		}
+		std::array<std::int32_t, 3> key = rows;
+		std::sort(key.begin(), key.end());
+		if (!known.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
+
+		const auto* concrete = dynamic_cast<const ConcreteDamageMat*>(&material);
+		const bool  plain    = !concrete || concrete->effects() == 0;
+		if (i == 0 || !sameGroup(*made.cores[i - 1], b)) {
+			ddem::TriangleGroup group;
+			group.begin           = i;
+			group.mu              = material.shear();
+			group.lambda          = material.bulk() - 2. / 3 * material.shear();
+			group.rotationModulus = material.shear() * material.rotationStiffness;
+			group.thickness       = shape.thickness;
+			if (!plain) {
+				group.law        = ddem::TriangleGroup::Law::Concrete;
+				group.firstState = s.concreteState.size();
+				const auto found = concreteOf.emplace(&material, s.concrete.size());
+				if (found.second) s.concrete.push_back({ ddem::PreparedConcrete(concrete->parameters()), concrete->effects() });
+				group.concrete = found.first->second;
+			}
+			s.group.push_back(group);
+		}
+		s.group.back().end   = i + 1;
+		const Real own       = shape.fractureEnergy;
+		if (!std::isfinite(own) || own == 0) reject(b, "fractureEnergy = " + std::to_string(own) + " J/m³ must be positive (or negative for the material's)");
+		s.fractureEnergy.push_back(own > 0 ? own : (concrete ? concrete->fractureEnergy : 0));
+		if (!plain)
+			for (int k = 0; k < 3; k++) {
+				ddem::ConcreteState state {};
+				state.damage = initialDamage(b);
+				s.concreteState.push_back(state);
+			}
+	}
+	for (std::size_t i = 0; i < made.nodes.size(); i++)
+		if (s.node.mass[i] == 0) reject(*made.nodes[i], "this DeformableNode belongs to no DeformableTriangle, so it has no mass; erase it");
+
+	// state: what the arrays of `previous` know, else what State says
+	const auto oldNodes = rowsById(previous.nodes), oldCores = rowsById(previous.cores);
+	const auto carry = [](const Body& b, ddem::Points& to, std::size_t i, const ddem::Points* from, std::size_t j) {
+		for (std::size_t c = 0; c < 2; c++) {
+			to.position[2 * i + c] = from ? from->position[2 * j + c] : b.state->pos[Eigen::Index(c)];
+			to.velocity[2 * i + c] = from ? from->velocity[2 * j + c] : b.state->vel[Eigen::Index(c)];
+		}
+	};
+	for (std::size_t i = 0; i < made.nodes.size(); i++) {
+		const auto old = oldNodes.find(made.nodes[i]->getId());
+		carry(*made.nodes[i], s.node, i, old == oldNodes.end() ? nullptr : &previous.system->node, old == oldNodes.end() ? 0 : old->second);
+	}
+	for (std::size_t i = 0; i < nCores; i++) {
+		const Body& b     = *made.cores[i];
+		const auto  old   = oldCores.find(b.getId());
+		const bool  known_ = old != oldCores.end();
+		carry(b, s.core, i, known_ ? &previous.system->core : nullptr, known_ ? old->second : 0);
+		if (s.spin.size()) {
+			const bool spun      = known_ && previous.system->spin.size();
+			s.spin.angle[i]    = spun ? previous.system->spin.angle[old->second] : angleOf(b.state->ori);
+			s.spin.velocity[i] = spun ? previous.system->spin.velocity[old->second] : b.state->angVel[2];
+		}
+		const ddem::TriangleGroup& group = s.groupOf(i);
+		if (known_ && group.law == ddem::TriangleGroup::Law::Concrete)
+			if (const ddem::ConcreteState* state = previous.system->concreteStates(old->second)) std::copy(state, state + 3, &s.concreteState[s.stateIndex(group, i)]);
+	}
+	made.nodeBlocked.assign(made.nodes.size(), 0);
+	made.coreBlocked.assign(nCores, 0);
+	made.takeBlockedDegreesOfFreedom();
+	s.build();
+	return made;
+}
+
+bool DeformableAssembly::upToDate(const Scene& scene) const
+{
+	if (!system) return false;
+	if (scene.bodies->size() == sceneBodies) return true;
+	std::size_t triangles = 0, points = 0; // bodies of other kinds may have come
+	for (const auto& b : *scene.bodies) {
+		if (!b || !b->shape) continue;
+		triangles += dynamic_cast<const DeformableTriangle*>(b->shape.get()) != nullptr;
+		points += dynamic_cast<const DeformableNode*>(b->shape.get()) != nullptr;
+	}
+	return triangles == cores.size() && points == nodes.size();
+}
+
+void DeformableAssembly::adopt(int groupMask) const
+{
+	for (std::size_t i = 0; i < nodes.size(); i++) {
+		nodes[i]->groupMask   = groupMask;
+		nodes[i]->state->mass = system->node.mass[i];
+	}
+	for (std::size_t i = 0; i < cores.size(); i++) {
+		cores[i]->groupMask      = groupMask;
+		cores[i]->state->mass    = system->core.mass[i];
+		cores[i]->state->inertia = Vector3r(0, 0, system->spin.size() ? system->spin.inertia[i] : 0);
+		auto& shape              = static_cast<DeformableTriangle&>(*cores[i]->shape);
+		shape.system             = system;
+		shape.slot               = i;
+	}
+}
+
+void DeformableAssembly::takeBlockedDegreesOfFreedom()
+{
+	const auto inverse = [](double mass, bool blocked) { return blocked ? 0 : 1 / mass; };
+	const auto take    = [&](const std::vector<shared_ptr<Body>>& bodies, ddem::Points& points, std::vector<unsigned>& known, std::vector<std::size_t>& constrained, unsigned relevant) {
+                constrained.clear();
+                for (std::size_t i = 0; i < bodies.size(); i++) {
+                        known[i]                      = bodies[i]->state->blockedDOFs;
+                        points.inverseMass[2 * i]     = inverse(points.mass[i], known[i] & State::DOF_X);
+                        points.inverseMass[2 * i + 1] = inverse(points.mass[i], known[i] & State::DOF_Y);
+                        if (known[i] & relevant) constrained.push_back(i);
+                }
+	};
+	take(nodes, system->node, nodeBlocked, constrainedNodes, planeDofs);
+	take(cores, system->core, coreBlocked, constrainedCores, coreDofs);
+	for (std::size_t i = 0; i < system->spin.size(); i++)
+		system->spin.inverseInertia[i] = inverse(system->spin.inertia[i], coreBlocked[i] & State::DOF_RZ);
+	system->collectConstraints();
+}
+
+namespace {
+
+	void expose(const Body& b, const ddem::Points& points, std::size_t i)
+	{
+		State& s = *b.state;
+		s.pos[0] = points.position[2 * i];
+		s.pos[1] = points.position[2 * i + 1];
+		s.vel[0] = points.velocity[2 * i];
+		s.vel[1] = points.velocity[2 * i + 1];
+	}
+
+	void exposeRotation(const Body& b, const ddem::TriangleSystem& s, std::size_t i)
+	{
+		b.state->ori = turnBy(s.frameAngle(i));
+		if (s.spin.size()) b.state->angVel[2] = s.spin.velocity[i];
+	}
+
+	bool importPoint(const Body& b, ddem::Points& points, std::size_t i)
+	{
+		const State& s       = *b.state;
+		bool         changed = false;
+		for (std::size_t c = 0; c < 2; c++) {
+			const auto axis = Eigen::Index(c);
+			changed |= s.pos[axis] != points.position[2 * i + c] || s.vel[axis] != points.velocity[2 * i + c];
+			points.position[2 * i + c] = s.pos[axis];
+			points.velocity[2 * i + c] = s.vel[axis];
+		}
+		if (changed) requireFinite(b);
+		return changed;
+	}
+
+} // namespace
+
+void DeformableAssembly::exposeAll()
+{
+	const auto nNodes = std::ptrdiff_t(nodes.size()), nCores = std::ptrdiff_t(cores.size());
+#pragma omp parallel for schedule(static)
+	for (std::ptrdiff_t i = 0; i < nNodes; i++)
+		expose(*nodes[std::size_t(i)], system->node, std::size_t(i));
+#pragma omp parallel for schedule(static)
+	for (std::ptrdiff_t i = 0; i < nCores; i++) {
+		expose(*cores[std::size_t(i)], system->core, std::size_t(i));
+		exposeRotation(*cores[std::size_t(i)], *system, std::size_t(i));
+	}
+}
+
+void DeformableAssembly::exposeConstrained() const
+{
+	for (const auto i : constrainedNodes)
+		expose(*nodes[i], system->node, i);
+	for (const auto i : constrainedCores) {
+		expose(*cores[i], system->core, i);
+		exposeRotation(*cores[i], *system, i);
+	}
+}
+
+void DeformableAssembly::importChanges()
+{
+	bool blockedChanged = false;
+	for (std::size_t i = 0; i < nodes.size(); i++) {
+		importPoint(*nodes[i], system->node, i);
+		blockedChanged |= nodes[i]->state->blockedDOFs != nodeBlocked[i];
+	}
+	for (std::size_t i = 0; i < cores.size(); i++) {
+		const Body& b = *cores[i];
+		importPoint(b, system->core, i);
+		blockedChanged |= b.state->blockedDOFs != coreBlocked[i];
+		if (system->spin.size()) {
+			if (b.state->ori.coeffs() != turnBy(system->spin.angle[i]).coeffs()) {
+				requireFinite(b);
+				system->spin.angle[i] = angleOf(b.state->ori);
+			}
+			system->spin.velocity[i] = b.state->angVel[2];
+			if (!std::isfinite(system->spin.velocity[i])) requireFinite(b);
+		}
+	}
+	if (blockedChanged) takeBlockedDegreesOfFreedom();
+}
+
+void DeformableAssembly::importPrescribed()
+{
+	const auto take = [](const Body& b, ddem::Points& points, std::size_t i) {
+		for (std::size_t c = 0; c < 2; c++)
+			if (points.inverseMass[2 * i + c] == 0) points.velocity[2 * i + c] = b.state->vel[Eigen::Index(c)];
+	};
+	for (const auto i : constrainedNodes)
+		take(*nodes[i], system->node, i);
+	for (const auto i : constrainedCores) {
+		take(*cores[i], system->core, i);
+		if (system->spin.size() && system->spin.inverseInertia[i] == 0) system->spin.velocity[i] = cores[i]->state->angVel[2];
+	}
+}
+
+void DeformableAssembly::importForces(ForceContainer& forces, bool wanted)
+{
+	if (!wanted) {
+		system->node.external.clear();
+		system->core.external.clear();
+		system->spin.external.clear();
+		return;
+	}
+	forces.sync();
+	const auto take = [&forces](const std::vector<shared_ptr<Body>>& bodies, ddem::Points& points) {
+		points.external.resize(2 * bodies.size());
+		for (std::size_t i = 0; i < bodies.size(); i++) {
+			const Vector3r& f          = forces.getForce(bodies[i]->getId());
+			points.external[2 * i]     = f[0];
+			points.external[2 * i + 1] = f[1];
+		}
+	};
+	take(nodes, system->node);
+	take(cores, system->core);
+	system->spin.external.resize(system->spin.size());
+	for (std::size_t i = 0; i < system->spin.size(); i++)
+		system->spin.external[i] = forces.getTorque(cores[i]->getId())[2];
+}
+
+void DeformableAssembly::exposeReactions(ForceContainer& forces) const
+{
+	forces.sync();
+	for (const auto i : constrainedNodes)
+		forces.addForceUnsynced(nodes[i]->getId(), Vector3r(system->node.force[2 * i], system->node.force[2 * i + 1], 0));
+	for (const auto i : constrainedCores)
+		forces.addForceUnsynced(cores[i]->getId(), Vector3r(system->core.force[2 * i], system->core.force[2 * i + 1], 0));
+}
+
+std::pair<double, std::size_t> DeformableAssembly::timeStep() const
+{
+	double      best  = std::numeric_limits<double>::infinity();
+	std::size_t where = 0;
+	for (std::size_t i = 0; i < cores.size(); i++) {
+		double step = restStep[i];
+		if (const ddem::ConcreteState* state = system->concreteStates(i)) {
+			const ddem::ConcreteGroupLaw& law = system->concrete[system->groupOf(i).concrete];
+			if (law.effects & ddem::ConcreteEffects::EquationOfState) {
+				double stiffest = 1;
+				for (std::size_t k = 0; k < 3; k++)
+					stiffest = std::max(stiffest, ddem::stiffnessFactor(law.parameters, state[k]));
+				step /= std::sqrt(stiffest);
+			}
+		}
+		if (step < best) {
+			best  = step;
+			where = i;
+		}
+	}
+	return { best, where };
+}
+
+} // namespace yade

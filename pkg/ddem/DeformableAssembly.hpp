@@ -1,0 +1,56 @@
+// GPL v2 or later, see LICENSE.
+// The link between YADE's bodies and the arrays of deformable triangles: assembles them, and carries state both ways.
+#pragma once
+
+#include <pkg/ddem/ConcreteDamageMat.hpp>
+#include <pkg/ddem/DeformableTriangle.hpp>
+
+#include <vector>
+
+namespace yade {
+
+class DeformableAssembly {
+public:
+	shared_ptr<ddem::TriangleSystem> system;
+	std::vector<shared_ptr<Body>>    nodes, cores; ///< in the order of the arrays, which is that of the body ids
+
+	/** Builds the arrays from all deformable bodies of the scene. Bodies known from `previous` keep their state.
+	 * Nothing is changed in the scene before all bodies have been checked.
+	 * \throws std::invalid_argument naming the body for: missing or wrong node bodies, wrong material, degenerate, clockwise or duplicate triangles, nodes without
+	 * triangles or at the same place, coordinates that are not finite, no triangles at all.
+	 */
+	static DeformableAssembly fromScene(Scene& scene, ddem::RotationTreatment rotation, Real vertexShare, const DeformableAssembly& previous);
+
+	/// Whether the scene's deformable bodies are those of this assembly (cheap unless bodies were added or erased).
+	bool upToDate(const Scene& scene) const;
+
+	/// Gives the bodies their masses and the group bit, and links shapes to the arrays.
+	void adopt(int groupMask) const;
+
+	/// Writes positions, velocities and rotations into State; of all bodies, or only of those with blocked degrees of freedom.
+	void exposeAll();
+	void exposeConstrained() const;
+	/// Takes up what was changed in State since exposeAll. \throws std::invalid_argument for values that are not finite.
+	void importChanges();
+	/// Takes up the velocities of blocked degrees of freedom.
+	void importPrescribed();
+	/// Takes up forces and torques that other engines added; `wanted` false drops the arrays.
+	void importForces(ForceContainer& forces, bool wanted);
+	/// Adds internal forces of bodies with blocked degrees of freedom to the container, so that O.forces.f(id) shows reactions.
+	void exposeReactions(ForceContainer& forces) const;
+
+	/// 2/ω of every triangle at rest [s].
+	const std::vector<double>& restTimeSteps() const { return restStep; }
+	/// Smallest stable step now [s] and the triangle that sets it.
+	std::pair<double, std::size_t> timeStep() const;
+
+private:
+	std::vector<unsigned>    nodeBlocked, coreBlocked;         ///< State::blockedDOFs as last taken up
+	std::vector<std::size_t> constrainedNodes, constrainedCores;
+	std::vector<double>      restStep;
+	std::size_t              sceneBodies = 0;
+
+	void takeBlockedDegreesOfFreedom();
+};
+
+} // namespace yade

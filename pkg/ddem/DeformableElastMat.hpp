@@ -1,0 +1,46 @@
+// GPL v2 or later, see LICENSE.
+// Elastic material of deformable triangles.
+#pragma once
+
+#include <pkg/ddem/YadeInclude.hpp>
+
+namespace yade {
+
+class DeformableElastMat : public FrictMat {
+public:
+	virtual ~DeformableElastMat() = default;
+
+	Real bulk() const { return young / (3 * (1 - 2 * poisson)); }
+	Real shear() const { return young / (2 * (1 + poisson)); }
+	void setBulk(Real value) { setModuli(value, shear()); }
+	void setShear(Real value) { setModuli(bulk(), value); }
+	/// \throws std::invalid_argument unless both moduli [Pa] are positive and finite
+	void setModuli(Real newBulk, Real newShear);
+
+	/// Checks all parameters. \throws std::invalid_argument naming the parameter, its value, its unit and the material's label.
+	virtual void validate() const;
+
+	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& kw) override;
+	void postLoad(DeformableElastMat&) { validate(); }
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(DeformableElastMat, FrictMat,
+		"Isotropic, linear elastic material of :yref:`DeformableTriangle` in plane strain.\n\n"
+		"Elasticity is given either by *young* [Pa] and *poisson* [-] or, as in [Zubelewicz2018]_, Table 1, by *bulk* [Pa] and *shear* [Pa], in the constructor or later; "
+		"one pair is kept and the other computed from it.\n\n"
+		"Errors: ValueError for moduli or density that are not positive, poisson outside (-1, 0.5), negative rotationStiffness, or anything not finite.",
+		((Real,rotationStiffness,2,Attr::triggerPostLoad,"Stiffness :math:`\\beta_\\varphi` [-] of the rotation-induced strain as a multiple of the shear modulus; felt only with :yref:`DeformableEngine.rotation` 'cosserat'. 0 leaves rotation free.")),
+		createIndex(); young = 79.4e9; poisson = 0.2; density = 2400;,
+		.add_property("bulk",&DeformableElastMat::bulk,&DeformableElastMat::setBulk,"Bulk modulus [Pa], computed from :yref:`young<ElastMat.young>` and :yref:`poisson<ElastMat.poisson>`; setting it keeps the shear modulus.")
+		.add_property("shear",&DeformableElastMat::shear,&DeformableElastMat::setShear,"Shear modulus [Pa], computed from :yref:`young<ElastMat.young>` and :yref:`poisson<ElastMat.poisson>`; setting it keeps the bulk modulus.")
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(DeformableElastMat, FrictMat);
+
+protected:
+	std::string where() const;
+	void        requirePositive(const char* name, Real value, const char* unit) const;
+};
+REGISTER_SERIALIZABLE(DeformableElastMat);
+
+} // namespace yade

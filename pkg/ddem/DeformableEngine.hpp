@@ -1,0 +1,86 @@
+// GPL v2 or later, see LICENSE.
+// The engine that computes and moves all deformable triangles of a scene.
+#pragma once
+
+#include <pkg/ddem/DeformableAssembly.hpp>
+
+#include <chrono>
+
+namespace yade {
+
+class DeformableEngine : public GlobalEngine {
+public:
+	virtual ~DeformableEngine() = default;
+
+	void action() override;
+
+	/// The one engine of this class in the current scene. \throws std::runtime_error if there is none or more than one.
+	static DeformableEngine& ofCurrentScene();
+	/// Builds the arrays from the scene's bodies unless they are up to date.
+	void assembleIfNeeded();
+	/// The arrays; assembled if need be.
+	const shared_ptr<ddem::TriangleSystem>& system();
+	const DeformableAssembly&               parts() const { return assembly; }
+
+	Real                  criticalTimeStep();
+	boost::python::tuple  rulingTriangle();
+	boost::python::object array(const std::string& name);
+	boost::python::object values(const std::string& name);
+
+	void preSave(DeformableEngine&);
+	void postSave(DeformableEngine&);
+	void postLoad(DeformableEngine&);
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(DeformableEngine, GlobalEngine,
+		"Computes internal forces of all :yref:`DeformableTriangle` bodies and moves their cores and nodes by leapfrog, with the scheme of :yref:`NewtonIntegrator` [Zubelewicz2018]_.\n\n"
+		"It keeps their state in arrays of its own and takes its bodies out of NewtonIntegrator (by :yref:`NewtonIntegrator.mask`), which costs five to ten times as much. "
+		"To the user bodies stay bodies: blockedDOFs, prescribed vel, forces that other engines add and changes made from Python are honoured; "
+		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind).\n\n"
+		"Place it after the engines that add forces and after :yref:`ForceResetter`. Results are the same, bit by bit, for any number of threads.\n\n"
+		"Errors: a time step above :yref:`criticalTimeStep<DeformableEngine.criticalTimeStep>`, engines in the wrong order, unusable triangles and a state that is not finite stop the run with the body, its place and the way out.\n\n"
+		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not).",
+		((std::string,rotation,"cosserat",Attr::triggerPostLoad,"How elements follow rotation: 'cosserat' (cores rotate, tied by :yref:`rotationStiffness<DeformableElastMat.rotationStiffness>`), 'corotational' (frame from the polar decomposition of the vertices' deformation, no rotational inertia) or 'none' (small rotations, cheapest)."))
+		((Real,vertexShare,1./6,Attr::triggerPostLoad,"Share :math:`\\alpha` [-] of a triangle's mass that sits in its vertices, a third of it in each; below 1/4 with 'cosserat'. Governs the stable time step."))
+		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored."))
+		((Real,damping,0,,"Coefficient [-] of Cundall's local non-viscous damping, as :yref:`NewtonIntegrator.damping`."))
+		((int,groupMask,1<<20,,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`."))
+		((vector<Real>,savedNodes,,Attr::hidden,"State of the nodes in a saved scene"))
+		((vector<Real>,savedCores,,Attr::hidden,"State of the cores in a saved scene"))
+		((vector<Real>,savedConcrete,,Attr::hidden,"State of concrete sub-elements in a saved scene"))
+		((vector<Real>,savedBook,,Attr::hidden,"Pending works of the energy book in a saved scene"))
+		((int,savedVersion,0,Attr::hidden,"Version of the saved state"))
+		((bool,exposed,true,Attr::hidden,"Whether State agreed with the arrays when saved")),
+		/*ctor*/,
+		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on the time step [s]: 2/ω of the stiffest element, at the current state of the equation of state. Works before the first step.")
+		.def("rulingTriangle",&DeformableEngine::rulingTriangle,"The triangle that rules the time step, as (body id, its own bound [s]).")
+		.def("array",&DeformableEngine::array,(boost::python::arg("name")),"Numpy view, without a copy, of a state array of the whole sample; rows in the order of :yref:`DeformableEngine.values` 'nodeIds' and 'triangleIds'.\n\n"
+			"nodePosition, nodeVelocity, nodeForce (nodes, 2) [m, m/s, N]; nodeMass (nodes,) [kg]; corePosition, coreVelocity, coreForce (triangles, 2); coreMass (triangles,) [kg]; "
+			"coreRotation, coreSpin (triangles,) [rad, rad/s] where cores rotate. Forces are the internal forces of the last step. Views stay valid until triangles are added; write to State rather than to a view.")
+		.def("values",&DeformableEngine::values,(boost::python::arg("name")),"Numpy array, computed now, of a quantity of the whole sample.\n\n"
+			"nodeIds (nodes,), triangleIds (triangles,): body ids; vertices (triangles, 3): row numbers of the nodes; area, rotation (triangles,) [m², rad]; "
+			"stress, strain, plasticStrain, damageTensor (triangles, 3, 4): xx, yy, zz, xy of the sub-elements in global axes [Pa, -]; damage (triangles, 3) [-]: η/η_max; fractureEnergy (triangles,) [J/m³].")
+	);
+	// clang-format on
+	DECLARE_LOGGER;
+
+private:
+	DeformableAssembly                    assembly;
+	std::vector<const Engine*>            checkedEngines;
+	bool                                  collectForces = false;
+	bool                                  stale         = true; ///< settings changed since the arrays were assembled
+	Real                                  checkedStep   = 0;    ///< time step that was last found stable [s]
+	std::chrono::steady_clock::time_point lastExposure {};
+	int                                   ids[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
+
+	ddem::RotationTreatment rotationTreatment() const;
+	void                    checkEngines();
+	void                    checkTimeStep();
+	bool                    somebodyMayLook() const;
+	void                    restoreSaved();
+	void                    bookEnergy(const ddem::StepEnergy&);
+	[[noreturn]] void       stopAtNotFinite();
+};
+REGISTER_SERIALIZABLE(DeformableEngine);
+
+} // namespace yade

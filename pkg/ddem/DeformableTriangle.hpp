@@ -1,0 +1,57 @@
+// GPL v2 or later, see LICENSE.
+// The deformable triangle particle as YADE sees it: a core body with three node bodies.
+#pragma once
+
+#include <pkg/ddem/YadeInclude.hpp>
+#include <pkg/ddem/kernel/TriangleSystem.hpp>
+
+#include <boost/weak_ptr.hpp>
+
+namespace yade {
+
+class DeformableTriangle : public Shape {
+public:
+	virtual ~DeformableTriangle() = default;
+
+	/// Where the engine keeps this triangle's state; empty until it has assembled the scene.
+	boost::weak_ptr<ddem::TriangleSystem> system;
+	std::size_t                         slot = 0;
+
+	boost::python::list stress() const;
+	boost::python::list strain() const;
+	boost::python::list plasticStrain() const;
+	boost::python::list damageTensor() const;
+	Real                damage() const;
+	Real                rotation() const;
+	Real                area() const;
+
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(DeformableTriangle, Shape,
+		"Deformable triangle of plane strain [Zubelewicz2018]_: its body is the rigid core (translation and rotation of the mass centre), three :yref:`DeformableNode` bodies are its "
+		"vertices, and the interior in between deforms by shape functions in three sub-elements (centre, vertex k, vertex k+1). Moved by :yref:`DeformableEngine`, which also "
+		"keeps stress and damage; what is read here is always the current state.\n\n"
+		"Tensors are in global axes, one per sub-element, tension positive.",
+		((Vector3i,nodes,Vector3i(-1,-1,-1),,"Ids of the three node bodies, counter-clockwise in the xy plane."))
+		((Real,thickness,1,,"Thickness [m] of the plane-strain slice."))
+		((Real,fractureEnergy,-1,,"This triangle's own fracture energy :math:`G_f` [J/m³]; negative: that of its :yref:`ConcreteDamageMat`."))
+		((Matrix3r,initialDamage,Matrix3r::Zero(),,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
+		createIndex();,
+		.add_property("stress",&DeformableTriangle::stress,"Stress [Pa] of the three sub-elements, list of Matrix3.")
+		.add_property("strain",&DeformableTriangle::strain,"Strain [-] of the three sub-elements, list of Matrix3.")
+		.add_property("plasticStrain",&DeformableTriangle::plasticStrain,"Plastic strain [-] of the three sub-elements, list of Matrix3; zero in elastic triangles.")
+		.add_property("damageTensor",&DeformableTriangle::damageTensor,"Damage tensor :math:`\\Omega` [-] of the three sub-elements, list of Matrix3; zero in elastic triangles.")
+		.add_property("damage",&DeformableTriangle::damage,"Damage :math:`\\eta/\\eta_{max}` [-], mean of the three sub-elements: 0 intact, 1 broken.")
+		.add_property("rotation",&DeformableTriangle::rotation,"Rotation [rad] of the element's frame about z, counter-clockwise; counts full turns where cores rotate ('cosserat').")
+		.add_property("area",&DeformableTriangle::area,"Area [m²] in the reference state.")
+	);
+	// clang-format on
+	REGISTER_CLASS_INDEX(DeformableTriangle, Shape);
+
+private:
+	const ddem::TriangleSystem& state() const;
+	boost::python::list         concreteTensors(ddem::PlaneTensor ddem::ConcreteState::*member) const;
+	boost::python::list         globalTensors(const std::array<ddem::PlaneTensor, 3>& tensors) const;
+};
+REGISTER_SERIALIZABLE(DeformableTriangle);
+
+} // namespace yade
