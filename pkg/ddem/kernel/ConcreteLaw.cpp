@@ -7,30 +7,27 @@
 #include <string>
 #include <utility>
 
-namespace yade {
-namespace ddem {
+namespace yade::ddem {
 
-	namespace {
-		template <std::size_t... masks> constexpr std::array<ConcreteUpdate, sizeof...(masks)> updatesOf(std::index_sequence<masks...>)
-		{
-			return { { &advanceConcrete<static_cast<unsigned>(masks)>... } };
-		}
-		constexpr auto updates = updatesOf(std::make_index_sequence<ConcreteEffects::All + 1>());
-	}
-
-	ConcreteUpdate concreteUpdate(unsigned effects)
+namespace {
+	template <std::size_t... masks> constexpr std::array<ConcreteUpdate, sizeof...(masks)> updatesOf(std::index_sequence<masks...>)
 	{
-		if (effects >= updates.size())
-			throw std::invalid_argument(
-			        "unknown effect in the mask " + std::to_string(effects) + "; the largest mask is " + std::to_string(updates.size() - 1) + " (all effects).");
-		return updates[effects];
+		return { { &advanceConcrete<static_cast<unsigned>(masks), double>... } };
 	}
+	constexpr auto updates = updatesOf(std::make_index_sequence<ConcreteEffects::All + 1>());
+}
 
-	double stiffnessFactor(const PreparedConcrete& concrete, const ConcreteState& state) { return tangentFactorAt(concrete, pressure(state.stress)); }
+ConcreteUpdate concreteUpdate(unsigned effects)
+{
+	if (effects >= updates.size())
+		throw std::invalid_argument(
+		        "unknown effect in the mask " + std::to_string(effects) + "; the largest mask is " + std::to_string(updates.size() - 1)
+		        + " (all effects).");
+	return updates[effects];
+}
 
-	double damageRatio(const PreparedConcrete& concrete, const ConcreteState& state) { return 1 - measureDamage(concrete, state.damage).integrity; }
+double stiffnessFactor(const PreparedConcrete& concrete, const ConcreteState& state) { return tangentFactor(concrete, state.stiffening); }
 
-	double storedEnergy(const ConcreteState& state) { return 0.5 * doubleDot(state.stress, state.strain - state.plasticStrain) + state.stiffeningEnergy; }
+double damageRatio(const PreparedConcrete& concrete, const ConcreteState& state) { return 1 - measureDamage(concrete, state.damage).integrity; }
 
-} // namespace ddem
-} // namespace yade
+} // namespace yade::ddem
