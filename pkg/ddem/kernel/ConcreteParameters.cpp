@@ -59,7 +59,7 @@ void ConcreteParameters::validate() const
 		{ "damageExponent", damageExponent, "[-]", 0, unbounded, false, true, "Concrete: 2." },
 		{ "damageLimit", damageLimit, "[-]", 0, 1, true, true, "1 is complete loss of stiffness." },
 		{ "referenceRate", referenceRate, "1/s", 0, unbounded, false, true, "Zubelewicz (2018) uses 1/s." },
-		{ "sharingTolerance", sharingTolerance, "[-]", 0, 1, false, false, "It is relative to the largest principal stress, 1e-3 for concrete." },
+		{ "sharingTolerance", sharingTolerance, "[-]", 0, 1, false, false, "It is relative to the largest principal stress, 0.05 for concrete." },
 		{ "closureBand", closureBand, "Pa", 0, unbounded, true, true, "0 closes cracks at zero stress." },
 		{ "residual", residual, "[-]", 0, 1, false, false, "It is the share of strength and stiffness that full damage leaves, 1e-6 or so." },
 	};

@@ -40,7 +40,7 @@ namespace {
 }
 
 MaterialPoint::MaterialPoint(const ConcreteParameters& parameters, unsigned effects, const PlaneTensor& damage)
-        : stressTolerance(1e-9 * parameters.strength)
+        : stressTolerance(1e-10 * parameters.strength)
         , concrete_(parameters)
         , update_(concreteUpdate(effects))
         , point_ {}

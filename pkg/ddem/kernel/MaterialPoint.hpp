@@ -47,7 +47,7 @@ public:
 	double                  time() const { return point_.time; } ///< [s]
 	const PreparedConcrete& concrete() const { return concrete_; }
 
-	double stressTolerance; ///< Largest error of a prescribed stress [Pa]; 1e-9 of the strength unless set
+	double stressTolerance; ///< Largest error of a prescribed stress [Pa]; 1e-10 of the strength unless set
 
 private:
 	using Components = std::array<double, 4>;
