@@ -7,9 +7,10 @@ namespace {
 
 	struct Baseline;
 
-	template <class Frame, bool energy> void concreteLoop(const ElementArrays& a, const TriangleGroup& g, std::size_t begin, std::size_t end, StepEnergy& sum)
+	template <class Frame, bool energy>
+	void concreteLoop(const ElementArrays& a, const TriangleGroup& g, std::size_t begin, std::size_t end, StepEnergy& sum)
 	{
-		ConcreteState* state  = a.state + 3 * (begin - g.begin);
+		ConcreteState* state = a.state + 3 * (begin - g.begin);
 		for (std::size_t i = begin; i < end; i++, state += 3) {
 			const LoadedElement<double>     element = loadElement<Frame, double>(a, i);
 			const SubElementTensors<double> strain  = subElementStrains(element.reference, element.du);
@@ -49,6 +50,11 @@ ElementLoop selectElementLoop(TriangleGroup::Law law, RotationTreatment rotation
 {
 	if (law == TriangleGroup::Law::Concrete) return energy ? concreteLoopFor<true>(rotation) : concreteLoopFor<false>(rotation);
 	if (const ElementLoop wide = selectElasticLoopAvx2(rotation, energy)) return wide;
+	return selectElasticLoopBaseline(rotation, energy);
+}
+
+ElementLoop selectElasticLoopBaseline(RotationTreatment rotation, bool energy)
+{
 	return energy ? elasticLoopFor<Baseline, double, true>(rotation) : elasticLoopFor<Baseline, double, false>(rotation);
 }
 

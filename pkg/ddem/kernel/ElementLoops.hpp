@@ -8,20 +8,20 @@ namespace yade::ddem {
 
 /// What an element loop reads and writes, as plain pointers.
 struct ElementArrays {
-	const std::int32_t*  vertex[3];
-	const double*        arm[4];
-	const double*        nodePosition;
-	const double*        corePosition;
-	const double*        coreAngle; ///< null unless cores rotate
-	double*              cornerX[3];
-	double*              cornerY[3];
-	double*              coreForce;
-	double*              coreMoment; ///< null unless cores rotate
-	const PreparedConcrete* concrete; ///< of concrete groups
+	const std::int32_t*     vertex[3];
+	const double*           arm[4];
+	const double*           nodePosition;
+	const double*           corePosition;
+	const double*           coreAngle; ///< null unless cores rotate
+	double*                 cornerX[3];
+	double*                 cornerY[3];
+	double*                 coreForce;
+	double*                 coreMoment; ///< null unless cores rotate
+	const PreparedConcrete* concrete;   ///< of concrete groups
 	ConcreteUpdate          update;
-	ConcreteState*       state;      ///< first state of the group
-	const double*        fractureEnergy;
-	double               dt;
+	ConcreteState*          state; ///< first state of the group
+	const double*           fractureEnergy;
+	double                  dt;
 };
 
 using ElementLoop = void (*)(const ElementArrays&, const TriangleGroup&, std::size_t begin, std::size_t end, StepEnergy&);
@@ -29,7 +29,10 @@ using ElementLoop = void (*)(const ElementArrays&, const TriangleGroup&, std::si
 /// The loop for a law, a rotation treatment, with or without the energy book; elastic loops use the widest SIMD unit of the processor they run on.
 ElementLoop selectElementLoop(TriangleGroup::Law law, RotationTreatment rotation, bool energy);
 
-/// Elastic loops compiled for processors with AVX2 and FMA (empty elsewhere).
+/// Elastic loops for any processor.
+ElementLoop selectElasticLoopBaseline(RotationTreatment rotation, bool energy);
+
+/// Elastic loops compiled for processors with AVX2 and FMA; null elsewhere.
 ElementLoop selectElasticLoopAvx2(RotationTreatment rotation, bool energy);
 
 } // namespace yade::ddem

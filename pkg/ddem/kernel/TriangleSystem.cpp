@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -44,27 +45,51 @@ namespace {
 		sum.dampingLoss += other.dampingLoss;
 	}
 
-	void collect(const std::vector<double>& inverseMass, const std::vector<double>& velocity, std::vector<Constraint>& list)
+	/** Lists the blocked degrees of freedom; keeps the last velocity of those known before.
+	 * \param share degrees of freedom per entry of mass.
+	 * \return the work of the change [J]: one that becomes blocked takes its kinetic energy out of the book, one that is released brings it in. */
+	double
+	collect(const std::vector<double>& inverseMass,
+	        const std::vector<double>& mass,
+	        std::size_t                share,
+	        const std::vector<double>& velocity,
+	        std::vector<Constraint>&   list)
 	{
 		std::vector<Constraint> old;
 		old.swap(list);
-		auto known = old.begin();
+		double     work    = 0;
+		auto       known   = old.begin();
+		const auto kinetic = [&](const Constraint& c) { return 0.5 * mass[c.index / share] * c.velocity * c.velocity; };
 		for (std::size_t i = 0; i < inverseMass.size(); i++) {
-			if (inverseMass[i] != 0) continue;
-			while (known != old.end() && known->index < i)
-				++known;
-			list.push_back(known != old.end() && known->index == i ? *known : Constraint { i, velocity[i] });
+			const bool wasBlocked = known != old.end() && known->index == i;
+			if (inverseMass[i] == 0) {
+				list.push_back(wasBlocked ? *known : Constraint { i, velocity[i] });
+				if (!wasBlocked) work -= kinetic(list.back());
+			} else if (wasBlocked)
+				work += kinetic(*known);
+			if (wasBlocked) ++known;
 		}
+		return work;
 	}
 
 	/// Work done on the system by what prescribes velocities: the reaction is minus the internal force. The trailing half step used the last velocity.
-	void bookReactions(std::vector<Constraint>& list, const std::vector<double>& velocity, const std::vector<double>& force, double dt, double& before, double& after)
+	void bookReactions(
+	        std::vector<Constraint>& list, const std::vector<double>& velocity, const std::vector<double>& force, double dt, double& before, double& after)
 	{
 		for (auto& c : list) {
 			before -= 0.5 * dt * force[c.index] * c.velocity;
 			c.velocity = velocity[c.index];
 			after -= 0.5 * dt * force[c.index] * c.velocity;
 		}
+	}
+
+	void requireComplete(std::size_t n, std::size_t share, std::initializer_list<const std::vector<double>*> parts, const std::vector<double>& external)
+	{
+		for (const auto* part : parts)
+			if (part->size() != share * n)
+				throw std::logic_error("TriangleSystem: position, velocity, mass and force of every node, core and spin are needed");
+		if (!external.empty() && external.size() != share * n)
+			throw std::logic_error("TriangleSystem: external forces must be given for all or for none");
 	}
 
 	std::size_t firstBad(const std::vector<double>& values)
@@ -103,6 +128,13 @@ void TriangleSystem::build()
 {
 	const std::size_t n = triangles();
 	if (core.size() != n || (rotation == RotationTreatment::Cosserat && spin.size() != n)) throw std::logic_error("TriangleSystem: one core per triangle");
+	for (const auto& list : vertex)
+		if (list.size() != n) throw std::logic_error("TriangleSystem: three corners per triangle");
+	for (const auto& list : arm)
+		if (list.size() != n) throw std::logic_error("TriangleSystem: two arms per triangle");
+	requireComplete(node.mass.size(), 2, { &node.position, &node.velocity, &node.inverseMass, &node.force }, node.external);
+	requireComplete(core.mass.size(), 2, { &core.position, &core.velocity, &core.inverseMass, &core.force }, core.external);
+	requireComplete(spin.angle.size(), 1, { &spin.velocity, &spin.inverseInertia, &spin.inertia, &spin.moment }, spin.external);
 	if (3 * n > std::numeric_limits<std::uint32_t>::max()) throw std::logic_error("TriangleSystem: too many triangles for 32-bit corner indices");
 	std::size_t covered = 0;
 	chunk.clear();
@@ -110,12 +142,13 @@ void TriangleSystem::build()
 		if (group[g].begin != covered || group[g].end < covered) throw std::logic_error("TriangleSystem: groups must cover the triangles in order");
 		covered = group[g].end;
 		if (group[g].law == TriangleGroup::Law::Concrete
-		    && (group[g].concrete >= concrete.size() || group[g].firstState + 3 * (group[g].end - group[g].begin) > concreteState.size()))
-			throw std::logic_error("TriangleSystem: a concrete group needs its material and states");
+		    && (group[g].concrete >= concrete.size() || group[g].firstState + 3 * (group[g].end - group[g].begin) > concreteState.size()
+		        || fractureEnergy.size() < group[g].end))
+			throw std::logic_error("TriangleSystem: a concrete group needs its material, states and fracture energies");
 		for (std::size_t begin = group[g].begin; begin < group[g].end; begin += trianglesPerChunk)
 			chunk.push_back({ g, begin, std::min(begin + trianglesPerChunk, group[g].end) });
 	}
-	if (covered != n || fractureEnergy.size() != n) throw std::logic_error("TriangleSystem: groups and fracture energies must cover all triangles");
+	if (covered != n) throw std::logic_error("TriangleSystem: groups must cover all triangles");
 
 	cornerStart.assign(node.size() + 1, 0);
 	for (const auto& list : vertex)
@@ -138,9 +171,9 @@ void TriangleSystem::build()
 
 void TriangleSystem::collectConstraints()
 {
-	collect(node.inverseMass, node.velocity, nodeConstraint);
-	collect(core.inverseMass, core.velocity, coreConstraint);
-	collect(spin.inverseInertia, spin.velocity, spinConstraint);
+	pending.externalWork += collect(node.inverseMass, node.mass, 2, node.velocity, nodeConstraint);
+	pending.externalWork += collect(core.inverseMass, core.mass, 2, core.velocity, coreConstraint);
+	pending.externalWork += collect(spin.inverseInertia, spin.inertia, 1, spin.velocity, spinConstraint);
 }
 
 StepEnergy TriangleSystem::step(const StepSettings& settings)
@@ -228,7 +261,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 		bookReactions(nodeConstraint, node.velocity, node.force, settings.dt, energy.externalWork, pending.externalWork);
 		bookReactions(coreConstraint, core.velocity, core.force, settings.dt, energy.externalWork, pending.externalWork);
 		bookReactions(spinConstraint, spin.velocity, spin.moment, settings.dt, energy.externalWork, pending.externalWork);
-	}
+	} else
+		pending = StepEnergy(); // works of a step without the book are not known
 	return energy;
 }
 
@@ -268,7 +302,10 @@ TriangleSystem::Place TriangleSystem::firstNotFinite() const
 	return {};
 }
 
-TriangleReference<double> TriangleSystem::reference(std::size_t i) const { return TriangleReference<double>({ arm[0][i], arm[1][i] }, { arm[2][i], arm[3][i] }); }
+TriangleReference<double> TriangleSystem::reference(std::size_t i) const
+{
+	return TriangleReference<double>({ arm[0][i], arm[1][i] }, { arm[2][i], arm[3][i] });
+}
 
 RelativeDisplacements<double> TriangleSystem::fromCentre(std::size_t i) const
 {
@@ -318,9 +355,9 @@ std::array<double, 3> TriangleSystem::subElementDamage(std::size_t i) const
 
 std::array<PlaneTensor, 3> TriangleSystem::strain(std::size_t i) const
 {
-	const TriangleReference<double> ref    = reference(i);
-	const Rotation<double>          turn   = frame(i);
-	RelativeDisplacements<double>   du     = fromCentre(i);
+	const TriangleReference<double> ref  = reference(i);
+	const Rotation<double>          turn = frame(i);
+	RelativeDisplacements<double>   du   = fromCentre(i);
 	for (std::size_t e = 0; e < 3; e++)
 		du[e] = relativeDisplacement(turn, du[e], ref.arm[e]);
 	std::array<PlaneTensor, 3> result {};

@@ -18,13 +18,13 @@ namespace yade::ddem {
 struct TriangleGroup {
 	enum class Law { Elastic, Concrete };
 
-	std::size_t     begin = 0, end = 0;       ///< triangles [begin, end)
-	Law             law   = Law::Elastic;
-	double          lambda = 0, mu = 0;       ///< Lamé constants [Pa] (elastic law)
-	double          rotationModulus = 0;      ///< μ β_φ [Pa]
-	double          thickness       = 1;      ///< [m]
-	std::size_t     concrete        = 0;      ///< index into TriangleSystem::concrete (concrete law)
-	std::size_t     firstState      = 0;      ///< index of the first sub-element's state in TriangleSystem::concreteState
+	std::size_t begin = 0, end = 0; ///< triangles [begin, end)
+	Law         law    = Law::Elastic;
+	double      lambda = 0, mu = 0;  ///< Lamé constants [Pa] (elastic law)
+	double      rotationModulus = 0; ///< μ β_φ [Pa]
+	double      thickness       = 1; ///< [m]
+	std::size_t concrete        = 0; ///< index into TriangleSystem::concrete (concrete law)
+	std::size_t firstState      = 0; ///< index of the first sub-element's state in TriangleSystem::concreteState
 };
 
 /// A concrete material prepared for the loop.
@@ -35,11 +35,11 @@ struct ConcreteGroupLaw {
 
 /// What a step has to do beyond internal forces and motion; what is off is not evaluated.
 struct StepSettings {
-	double               dt = 0;            ///< [s]
-	PlaneVector<double>  gravity { 0, 0 };  ///< [m/s²]
-	double               damping  = 0;      ///< Cundall's local damping coefficient [-], as in NewtonIntegrator
-	bool                 external = false;  ///< add TriangleSystem::external forces
-	bool                 energy   = false;  ///< fill StepEnergy
+	double              dt = 0;           ///< [s]
+	PlaneVector<double> gravity { 0, 0 }; ///< [m/s²]
+	double              damping  = 0;     ///< Cundall's local damping coefficient [-], as in NewtonIntegrator
+	bool                external = false; ///< add TriangleSystem::external forces
+	bool                energy   = false; ///< fill StepEnergy; works are complete while it is on in every step
 };
 
 /** Energies of one step [J]. Works are what forces did up to the instant of the positions the step started from; kinetic energy is the leapfrog's conserved
@@ -63,11 +63,11 @@ struct Points {
 
 /// Rotations of the cores; empty where cores do not rotate.
 struct Spins {
-	std::vector<double> angle, velocity;       ///< [rad] (unwrapped), [rad/s]
-	std::vector<double> inverseInertia;        ///< [1/(kg·m²)]; 0 where blocked
-	std::vector<double> inertia;               ///< [kg·m²]
-	std::vector<double> moment;                ///< internal moment of the last step [N·m]
-	std::vector<double> external;              ///< moment from outside [N·m]; empty if there is none
+	std::vector<double> angle, velocity; ///< [rad] (unwrapped), [rad/s]
+	std::vector<double> inverseInertia;  ///< [1/(kg·m²)]; 0 where blocked
+	std::vector<double> inertia;         ///< [kg·m²]
+	std::vector<double> moment;          ///< internal moment of the last step [N·m]
+	std::vector<double> external;        ///< moment from outside [N·m]; empty if there is none
 
 	std::size_t size() const { return angle.size(); }
 	void        resize(std::size_t n);
@@ -75,7 +75,7 @@ struct Spins {
 
 /// A blocked degree of freedom and the velocity it had in the last step: its reaction does the external work.
 struct Constraint {
-	std::size_t index = 0;    ///< place in Points::velocity or Spins::velocity
+	std::size_t index    = 0; ///< place in Points::velocity or Spins::velocity
 	double      velocity = 0; ///< velocity of the last step [m/s, rad/s]
 };
 
@@ -91,7 +91,7 @@ public:
 	std::array<std::vector<double>, 4>       arm;    ///< r_1x, r_1y, r_2x, r_2y of every triangle [m]; r_3 = −r_1 − r_2
 	std::vector<TriangleGroup>               group;  ///< in order, covering all triangles
 	std::vector<ConcreteGroupLaw>            concrete;
-	std::vector<double>                      fractureEnergy; ///< G_f of every triangle [J/m³]; only read in concrete groups
+	std::vector<double>                      fractureEnergy; ///< G_f of every triangle [J/m³]; only read in concrete groups, empty if there are none
 	RotationTreatment                        rotation = RotationTreatment::Cosserat;
 
 	// --- state
@@ -106,7 +106,7 @@ public:
 	 * \throws std::logic_error if sizes disagree or a node index is out of range. */
 	void build();
 
-	/// Tells the energy book which degrees of freedom are blocked now (inverse mass 0); call after changing any.
+	/// Tells the energy book which degrees of freedom are blocked now (inverse mass 0); call after changing any, and before their velocities are changed.
 	void collectConstraints();
 
 	/** One explicit step. \throws std::domain_error if a velocity is not finite (see firstNotFinite). */
