@@ -1,8 +1,11 @@
 # GPL v2 or later, see LICENSE.
 """Mesh files, through meshio."""
+import contextlib
+import io
 import os
 import re
 import warnings
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -66,14 +69,26 @@ def write(mesh, path):
 
 def _read_with_meshio(path):
 	import meshio
+	said = io.StringIO()  # meshio prints what is wrong, and then ends the process
 	try:
-		with warnings.catch_warnings():
+		with warnings.catch_warnings(), contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
 			warnings.simplefilter("ignore")
 			return meshio.read(path)
-	except SystemExit as exit:  # meshio ends the process when it does not know the file's ending
-		raise ValueError(f"cannot read mesh file {path!r}: no reader for this kind of file") from exit
+	except SystemExit:
+		reason = " ".join(said.getvalue().split())
 	except Exception as error:  # whatever the reader of a damaged file stumbles over
-		raise ValueError(f"cannot read mesh file {path!r}; it is truncated, damaged or of another kind ({type(error).__name__}: {error or 'no details'})") from error
+		reason = f"{type(error).__name__}: {error}"
+	raise ValueError(f"cannot read mesh file {path!r}; it is truncated, damaged or of another kind ({_xml_error(path) or reason})")
+
+
+def _xml_error(path):
+	"""Where a file that should be XML stops being it: meshio knows but does not say."""
+	if path.endswith((".vtu", ".vtp", ".xdmf")):
+		try:
+			ElementTree.parse(path)
+		except ElementTree.ParseError as error:
+			return str(error)
+	return ""
 
 
 def _check_gmsh_text(path):

@@ -160,8 +160,12 @@ class Mesh:
 		return Mesh(self.nodes, self.triangles, self.regions, self.region_names, orient=True)
 
 	def reordered(self):
-		"""The same mesh renumbered for locality in memory: triangles grouped by region, in each along a Hilbert curve; nodes in the order of their first use."""
-		curve = np.frombuffer(_mesh.hilbertOrder(np.ascontiguousarray(self.centroids)), dtype=np.int32)
+		"""The same mesh renumbered for locality in memory: triangles grouped by region, in each along a Hilbert curve; nodes in the order of their first use.
+
+		The result does not depend on the numbering before.
+		"""
+		plain = np.lexsort(self.centroids.T)  # the curve's order within its smallest cells is that of its input
+		curve = plain[np.frombuffer(_mesh.hilbertOrder(np.ascontiguousarray(self.centroids[plain])), dtype=np.int32)]
 		order = curve[np.argsort(self.regions[curve], kind="stable")]
 		triangles = self.triangles[order]
 		used, first = np.unique(triangles, return_index=True)
