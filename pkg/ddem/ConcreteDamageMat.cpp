@@ -3,7 +3,7 @@
 
 namespace yade {
 
-YADE_PLUGIN((ConcreteDamageMat));
+DDEM_PLUGIN((ConcreteDamageMat))
 
 ddem::ConcreteParameters ConcreteDamageMat::parameters() const
 {

@@ -22,8 +22,8 @@ public:
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(ConcreteDamageMat, DeformableElastMat,
 		"Concrete of :yref:`DeformableTriangle`: viscoplastic Mohr-Coulomb flow, tensorial damage, degradation of elasticity, equation of state [Zubelewicz2018]_, section 3. "
 		"Defaults are the report's Tables 1 and 2: a high-strength concrete, about 91 MPa in compression and 10 MPa in tension at 1/s.\n\n"
-		"An effect that is switched off is not evaluated. The pressure-dependent friction, the strain rate measure and the sharing of flow between equal principal stresses are not "
-		"printed in the report; see the material page of the documentation for the closures used.\n\n"
+		"An effect that is switched off is not evaluated. Three things are not printed in the report and closed here so that its Table 2, unchanged, gives its strengths: the strain rate "
+		"of eq. 7 is :math:`\\dot e_N=\\sqrt{\\dot\\varepsilon:\\dot\\varepsilon/2}`, friction decays as :math:`q_D=q_0(1+\\langle p\\rangle/p_{q0})^{-n_q}`, and equal principal stresses share the flow.\n\n"
 		"Limits: small strain in the element's frame; fracture energy is per volume, so the energy of a crack scales with the size of the elements.",
 		((Real,eosPressure,1.1e9,Attr::triggerPostLoad,"Pressure :math:`p_{EOS}` [Pa] at which the moduli have doubled."))
 		((Real,eosExponent,2./3,Attr::triggerPostLoad,"Exponent :math:`n_{EOS}` [-] of the equation of state."))

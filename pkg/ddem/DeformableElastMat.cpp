@@ -5,7 +5,7 @@
 
 namespace yade {
 
-YADE_PLUGIN((DeformableElastMat));
+DDEM_PLUGIN((DeformableElastMat))
 
 std::string DeformableElastMat::where() const { return getClassName() + (label.empty() ? "" : " '" + label + "'") + ": "; }
 

@@ -9,7 +9,7 @@
 
 namespace yade {
 
-YADE_PLUGIN((DeformableEngine));
+DDEM_PLUGIN((DeformableEngine))
 CREATE_LOGGER(DeformableEngine);
 
 namespace {

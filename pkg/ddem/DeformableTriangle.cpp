@@ -6,7 +6,7 @@
 
 namespace yade {
 
-YADE_PLUGIN((DeformableNode)(DeformableTriangle));
+DDEM_PLUGIN((DeformableNode)(DeformableTriangle))
 
 const ddem::TriangleSystem& DeformableTriangle::state() const
 {

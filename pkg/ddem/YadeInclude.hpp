@@ -3,11 +3,11 @@
 //
 // Every YADE header registers its class with the factory through REGISTER_FACTORABLE, which makes each of our files re-emit the factories, and with them
 // the Python registration and serialization, of every stock class it includes: some 20 of 36 seconds.  The stock libraries have registered their classes
-// already, so the macro is empty while their headers are read and comes back for ours.  The same set of headers everywhere also lets the build precompile it.
+// already, so the macro is empty here; our own are registered by DDEM_PLUGIN, once, in the file that implements them, and not in every file that reads their
+// header.
 #pragma once
 
 #include <lib/factory/ClassFactory.hpp>
-#pragma push_macro("REGISTER_FACTORABLE")
 #undef REGISTER_FACTORABLE
 #define REGISTER_FACTORABLE(name)
 
@@ -28,6 +28,7 @@
 #include <core/State.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/Facet.hpp>
+#include <pkg/common/KinematicEngines.hpp>
 #include <pkg/common/NormShearPhys.hpp>
 #include <pkg/common/PeriodicEngines.hpp>
 #include <pkg/common/Sphere.hpp>
@@ -39,4 +40,16 @@
 #include <pkg/common/GLDrawFunctors.hpp>
 #endif
 
-#pragma pop_macro("REGISTER_FACTORABLE")
+namespace yade {
+
+template <class Class> bool registerClass(const char* name)
+{
+	return ClassFactory::instance().registerFactorable(
+	        name, []() -> Factorable* { return new Class; }, []() -> shared_ptr<Factorable> { return shared_ptr<Class>(new Class); }, []() -> void* { return new Class; });
+}
+
+} // namespace yade
+
+#define DDEM_REGISTER_CLASS(x, y, name) const bool BOOST_PP_CAT(registered, name) __attribute__((unused)) = registerClass<name>(BOOST_PP_STRINGIZE(name));
+/// YADE_PLUGIN for our classes: also registers them with the factory.
+#define DDEM_PLUGIN(classes) YADE_PLUGIN(classes) BOOST_PP_SEQ_FOR_EACH(DDEM_REGISTER_CLASS, ~, classes)
