@@ -1,16 +1,9 @@
 // GPL v2 or later, see LICENSE.
-// Compares what this plugin was compiled for with the YADE that is running.
+// Compares the memory layout of YADE's classes, as this plugin was compiled, with the YADE that is running.
 #include <pkg/ddem/loader/LayoutCheck.hpp>
 
-#include <lib/factory/ClassFactory.hpp>
-#undef REGISTER_FACTORABLE
-#define REGISTER_FACTORABLE(name) // the stock classes are registered already; see pkg/ddem/YadeInclude.hpp
-#include <core/Body.hpp>
-#include <core/Scene.hpp>
-#include <core/Shape.hpp>
-#include <core/State.hpp>
-#include <pkg/dem/NewtonIntegrator.hpp>
-#include <pkg/dem/ScGeom.hpp>
+#include <pkg/ddem/YadeInclude.hpp>
+
 #include <malloc.h>
 #include <memory>
 
@@ -18,30 +11,61 @@ namespace yade::ddem {
 
 namespace {
 
-	/// What the allocator really hands out for `size` bytes: the sizes of two classes can only be compared after this rounding.
+	/// What the allocator really hands out for that many bytes; the sizes of two classes are comparable only after this rounding.
 	std::size_t usableSize(std::size_t size)
 	{
-		std::unique_ptr<void, decltype(&std::free)> block(std::malloc(size), &std::free);
+		const std::unique_ptr<void, decltype(&std::free)> block(std::malloc(size), &std::free);
 		return malloc_usable_size(block.get());
 	}
 
-	template <typename Class, typename Member> std::string compare(const char* name, const char* attribute, Member Class::*member, Member value)
+	std::unique_ptr<Factorable> makeStockObject(const char* name) { return std::unique_ptr<Factorable>(ClassFactory::instance().createPure(name)); }
+
+	/// Compares the size of class `Class`, called `name` in YADE's factory.
+	template <typename Class> std::string compareSize(const char* name, const Factorable& stock)
 	{
-		const std::string                     prefix = std::string("  ") + name + ": ";
-		const std::unique_ptr<Factorable>     object(ClassFactory::instance().createPure(name));
-		const std::size_t                     theirs = malloc_usable_size(dynamic_cast<void*>(object.get())), ours = usableSize(sizeof(Class));
-		if (theirs != ours) return prefix + std::to_string(theirs) + " bytes in YADE, " + std::to_string(ours) + " in the plugin\n";
-		Class& typed = static_cast<Class&>(*object);
-		typed.pySetAttr(attribute, boost::python::object(value));
-		if (!(typed.*member == value)) return prefix + "its member " + attribute + " lies elsewhere\n";
-		return "";
+		const std::size_t inYade = malloc_usable_size(const_cast<void*>(dynamic_cast<const void*>(&stock))), here = usableSize(sizeof(Class));
+		if (inYade == here) return "";
+		return std::string("  class ") + name + ": " + std::to_string(inYade) + " bytes in YADE, " + std::to_string(here) + " in the plugin\n";
+	}
+
+	template <typename Class> std::string compare(const char* name) { return compareSize<Class>(name, *makeStockObject(name)); }
+
+	/// Compares the size, then the place of a member, which must be a number or a truth value: Python knows no other types yet when plugins are loaded.
+	template <typename Class, typename Member, typename Owner> std::string compare(const char* name, const char* attribute, Member Owner::*member, Member value)
+	{
+		const std::unique_ptr<Factorable> stock = makeStockObject(name);
+		const std::string                 sizes = compareSize<Class>(name, *stock);
+		if (!sizes.empty()) return sizes; // reading a member could then reach beyond the object
+		Class& object = static_cast<Class&>(*stock);
+		object.pySetAttr(attribute, boost::python::object(value));
+		if (object.*member == value) return "";
+		return std::string("  class ") + name + ": its member " + attribute + " lies elsewhere in YADE than in the plugin\n";
 	}
 
 } // namespace
 
 std::string layoutDifferences()
 {
-	return compare("Shape", "highlight", &Shape::highlight, true) + compare("State", "densityScaling", &State::densityScaling, Real(0.125));
+	// Values differ from the members' defaults, so that a member at the wrong place cannot hold them by accident.
+	return compare<Shape>("Shape", "highlight", &Shape::highlight, true)                                                              //
+	        + compare<Sphere>("Sphere", "radius", &Sphere::radius, Real(0.3125))                                                     //
+	        + compare<State>("State", "densityScaling", &State::densityScaling, Real(0.3125))                                        //
+	        + compare<Body>("Body", "timeBorn", &Body::timeBorn, Real(0.3125))                                                       //
+	        + compare<Bound>("Bound", "lastUpdateIter", &Bound::lastUpdateIter, 31)                                                  //
+	        + compare<Aabb>("Aabb")                                                                                                  //
+	        + compare<Material>("Material", "density", &Material::density, Real(0.3125))                                             //
+	        + compare<FrictMat>("FrictMat", "frictionAngle", &FrictMat::frictionAngle, Real(0.3125))                                 //
+	        + compare<Interaction>("Interaction", "iterBorn", &Interaction::iterBorn, 31L)                                           //
+	        + compare<ScGeom6D>("ScGeom6D", "twist", &ScGeom6D::twist, Real(0.3125))                                                 //
+	        + compare<FrictPhys>("FrictPhys", "tangensOfFrictionAngle", &FrictPhys::tangensOfFrictionAngle, Real(0.3125))            //
+	        + compare<GlobalEngine>("GlobalEngine", "dead", &GlobalEngine::dead, true)                                               //
+	        + compare<PartialEngine>("PartialEngine")                                                                                //
+	        + compare<PeriodicEngine>("PeriodicEngine", "nDone", &PeriodicEngine::nDone, 31L)                                        //
+	        + compare<IPhysFunctor>("IPhysFunctor") + compare<LawFunctor>("LawFunctor") + compare<BoundFunctor>("BoundFunctor")      //
+	        + compare<NewtonIntegrator>("NewtonIntegrator", "mask", &NewtonIntegrator::mask, 31)                                     //
+	        + compare<BodyContainer>("BodyContainer", "enableRedirection", &BodyContainer::enableRedirection, false)                 //
+	        + compare<InteractionContainer>("InteractionContainer") + compare<EnergyTracker>("EnergyTracker") + compare<Cell>("Cell") //
+	        + compare<Scene>("Scene", "selectedBody", &Scene::selectedBody, 31);
 }
 
 } // namespace yade::ddem

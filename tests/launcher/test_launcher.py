@@ -1,0 +1,112 @@
+# GPL v2 or later, see LICENSE.
+# The launcher as its users see it.  Runs outside YADE, in an environment where YADE is installed.
+import fcntl
+import os
+import pathlib
+import signal
+import subprocess
+
+import pytest
+
+DDEM = pathlib.Path(__file__).resolve().parents[2] / 'scripts' / 'ddem'
+
+
+def ddem(*arguments, **options):
+	return subprocess.run([DDEM, *map(str, arguments)], capture_output=True, text=True, **options)
+
+
+@pytest.fixture
+def script(tmp_path):
+	"""Writes a YADE script into a folder with a space in its name."""
+
+	def write(text):
+		folder = tmp_path / 'a folder'
+		folder.mkdir(exist_ok=True)
+		path = folder / 'script.py'
+		path.write_text(text)
+		return path
+
+	return write
+
+
+@pytest.mark.parametrize('command', ['run', 'test', 'bench', 'shell', 'setup'])
+def test_every_command_has_help(command):
+	result = ddem(command, '--help')
+	assert result.returncode == 0
+	assert result.stdout.startswith('scripts/ddem ' + command)
+
+
+def test_general_help_names_every_command():
+	result = ddem('--help')
+	assert result.returncode == 0
+	assert all('scripts/ddem ' + command in result.stdout for command in ['run', 'test', 'bench', 'shell', 'setup'])
+
+
+@pytest.mark.parametrize(
+	'arguments, message', [
+		(['fly'], "no command 'fly'"),
+		(['run'], 'which script'),
+		(['run', 'missing.py'], 'no such script: missing.py'),
+		(['run', '--threads', 'many', 'x.py'], "--threads needs a number, not 'many'"),
+		(['run', '--fast', 'x.py'], "unknown option '--fast'"),
+		(['setup', '--hurry'], "unknown argument '--hurry'"),
+	]
+)
+def test_wrong_use_is_one_line_and_exit_code_2(arguments, message):
+	result = ddem(*arguments)
+	assert result.returncode == 2
+	assert message in result.stderr and result.stderr.count('\n') == 1 and result.stdout == ''
+
+
+def test_script_runs_with_the_plugin_its_arguments_and_the_callers_directory(script, tmp_path):
+	path = script(
+		'''
+import os, sys
+import yade
+open('result.txt', 'w').write(repr((sys.argv[1:], os.getcwd(), os.environ['MY_VARIABLE'], any('libpkg_ddem.so' in line for line in open('/proc/self/maps')))))
+'''
+	)
+	result = ddem('run', path, 'two words', '--option', '', cwd=tmp_path, env={**os.environ, 'MY_VARIABLE': "it's"})
+	assert result.returncode == 0, result.stderr
+	assert eval((tmp_path / 'result.txt').read_text()) == (['two words', '--option', ''], str(tmp_path), "it's", True)
+	assert (tmp_path / 'result.txt').stat().st_uid == os.getuid()
+
+
+@pytest.mark.parametrize('code', [0, 7])
+def test_exit_code_is_the_scripts(script, code):
+	assert ddem('run', script('import sys; sys.exit(%d)' % code)).returncode == code
+
+
+def test_script_error_is_exit_code_1(script):
+	result = ddem('run', script('1 / 0'))
+	assert result.returncode == 1 and 'ZeroDivisionError' in result.stderr
+
+
+@pytest.mark.parametrize('options, variable, threads', [(['--threads', '2'], None, 2), ([], '2', 2), ([], None, 1)])
+def test_number_of_threads(script, options, variable, threads):
+	environment = {key: value for key, value in os.environ.items() if key != 'OMP_NUM_THREADS'}
+	if variable:
+		environment['OMP_NUM_THREADS'] = variable
+	result = ddem('run', *options, script('print("threads", O.numThreads)'), env=environment)
+	assert 'threads %d' % threads in result.stdout
+
+
+def test_ctrl_c_stops_the_script(script):
+	path = script('import time\nprint("started", flush=True)\ntime.sleep(60)')
+	process = subprocess.Popen([DDEM, 'run', path], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+	for line in process.stdout:
+		if line.startswith('started'):
+			break
+	os.killpg(process.pid, signal.SIGINT)
+	assert process.wait(timeout=20) != 0
+
+
+def test_second_launcher_waits_for_the_first_and_says_so():
+	cache = pathlib.Path(os.environ.get('XDG_CACHE_HOME') or pathlib.Path.home() / '.cache') / 'yade-ddem'
+	with open(cache / 'lock', 'a') as lock:
+		fcntl.flock(lock, fcntl.LOCK_EX)
+		waiting = subprocess.Popen([DDEM, 'shell', 'true'], stderr=subprocess.PIPE, text=True)
+		assert 'another scripts/ddem is setting up' in waiting.stderr.readline()
+		assert waiting.poll() is None
+		fcntl.flock(lock, fcntl.LOCK_UN)
+		assert waiting.wait(timeout=60) == 0
