@@ -1,0 +1,57 @@
+# GPL v2 or later, see LICENSE.
+"""How well the energy book of a run closes."""
+from yade import DeformableNode, O, Vector3
+
+#: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
+EXTERNAL = ("externalWork", "gravWork")
+
+
+class EnergyBalance:
+	"""The energy book of the scene, from O.energy. Make one before the first step; it switches O.trackEnergy on.
+
+	O.energy holds what is stored and dissipated with a plus sign and what came in from outside with a minus sign, so the total does not change in an exact run. It is
+	zero where the run begins at rest; a scene that moves already (or was not tracked before) has energy of its own, which is known after the first tracked step: the
+	error then counts from the first look at :attr:`error` or :meth:`record`.
+	"""
+
+	def __init__(self):
+		begun = O.trackEnergy and len(O.energy.keys()) > 0
+		self._born = O.iter
+		self.start = O.energy.total() if begun else 0.0 if O.iter == 0 and _at_rest() else None  #: total [J] that the book must keep; None until it is known
+		self.largest = 0.0  #: largest error at any :meth:`record` so far [-]
+		O.trackEnergy = True
+
+	def parts(self):
+		"""All entries [J] by name."""
+		return dict(O.energy.items())
+
+	@property
+	def error(self):
+		"""How far the total has moved, over the energy that has gone through the system [-]; 0 before anything happened."""
+		if self.start is None:
+			if O.iter == self._born:
+				return 0.0
+			self.start = O.energy.total()
+		parts = self.parts()
+		through = max(sum(abs(parts.get(name, 0)) for name in EXTERNAL), sum(value for name, value in parts.items() if name not in EXTERNAL))
+		return abs(O.energy.total() - self.start) / through if through > 0 else 0.0
+
+	def record(self):
+		"""The parts now, and keep the largest error."""
+		self.largest = max(self.largest, self.error)
+		return self.parts()
+
+
+def _at_rest():
+	"""Whether nothing moves by itself and no triangle is deformed; what moves as prescribed has its energy from outside."""
+	still = Vector3.Zero
+	for body in O.bodies:
+		state = body.state
+		if isinstance(body.shape, DeformableNode) and state.pos != state.refPos:
+			return False
+		if state.vel == still and state.angVel == still:
+			continue
+		blocked = state.blockedDOFs
+		if any(state.vel[k] and "xyz"[k] not in blocked or state.angVel[k] and "XYZ"[k] not in blocked for k in range(3)):
+			return False
+	return True

@@ -1,0 +1,118 @@
+# GPL v2 or later, see LICENSE.
+"""Loading a sample: platens that compress it, and runs with a progress bar."""
+import math
+import numbers
+import time
+
+from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngine
+
+from .block import Block
+
+
+def platens(block, velocity, ramp=0.0, lateral="fixed", both=False):
+	"""Drive the top of a block down (and the bottom up), as stiff platens would.
+
+	:param block: :class:`Block` from :func:`append`
+	:param velocity: speed of the top platen [m/s], positive compresses, negative pulls.
+	:param ramp: time over which the speed grows linearly from zero [s].
+	:param lateral: "fixed" holds the end nodes laterally (rough platens), "free" lets them slide.
+	:param both: False: the bottom stands still; True: it moves towards the top at the same speed.
+	:returns: :class:`Platens`; put its ``engines`` into O.engines before the DeformableEngine.
+	"""
+	if lateral not in ("fixed", "free"):
+		raise ValueError(f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)")
+	if not math.isfinite(velocity) or velocity == 0:
+		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
+	if not ramp >= 0:
+		raise ValueError(f"ramp = {ramp} s must not be negative")
+	return Platens(block, velocity, ramp, lateral, both)
+
+
+class Platens:
+	"""Two platens on a block of deformable triangles: what they do and what they feel. Compression is positive here, as strengths are."""
+
+	def __init__(self, block, velocity, ramp, lateral, both):
+		self.sample = block
+		self.top, self.bottom = block.boundary("top"), block.boundary("bottom")  #: body ids
+		dofs = "xy" if lateral == "fixed" else "y"
+		for ids in (self.top, self.bottom):
+			block.hold(ids, dofs)
+		self.engines = [_drive(self.top, -velocity, ramp)]
+		if both:
+			self.engines.append(_drive(self.bottom, velocity, ramp))
+		nodes = block.mesh.nodes
+		self._rows = {"top": block.mesh.boundary("top"), "bottom": block.mesh.boundary("bottom")}
+		self.height = nodes[:, 1].max() - nodes[:, 1].min()  #: [m]
+		self.area = (nodes[self._rows["top"], 0].max() - nodes[self._rows["top"], 0].min()) * block.thickness  #: of the loaded face [m²]
+
+	@property
+	def force_top(self):
+		"""Force that compresses the sample at the top [N], compression positive."""
+		return float(self.sample.node_forces[self._rows["top"], 1].sum())
+
+	@property
+	def force_bottom(self):
+		"""Force that compresses the sample at the bottom [N], compression positive."""
+		return float(-self.sample.node_forces[self._rows["bottom"], 1].sum())
+
+	@property
+	def stress_top(self):
+		"""Average normal stress on the top [Pa], compression positive."""
+		return self.force_top / self.area
+
+	@property
+	def stress(self):
+		"""Average normal stress of both ends [Pa], compression positive: (F_top + F_bottom)/2A."""
+		return 0.5 * (self.force_top + self.force_bottom) / self.area
+
+	@property
+	def strain(self):
+		"""Shortening of the sample over its height [-], compression positive."""
+		moved = self.sample.displacements
+		return float(moved[self._rows["bottom"], 1].mean() - moved[self._rows["top"], 1].mean()) / self.height
+
+
+def _drive(ids, velocity, ramp):
+	return RampedTranslationEngine(ids=[int(i) for i in ids], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp)
+
+
+def run(until=None, steps=None, progress=True):
+	"""O.run with a progress bar and checks beforehand; plain O.run works as well.
+
+	A run that something else ends, such as O.pause() in a PyRunner, ends here as well.
+
+	:param until: time to run to [s]; or
+	:param steps: number of steps.
+	:raises ValueError: neither or both of them, a time that has passed, no time step.
+	:raises RuntimeError: an engine is missing or the run stopped with an error.
+	"""
+	from tqdm import tqdm
+	if (until is None) == (steps is None):
+		raise ValueError("give either until= [s] or steps=")
+	if not O.dt > 0:
+		raise ValueError(f"O.dt = {O.dt} s must be positive; set O.dt = ddem.time_step(0.8)")
+	if steps is None:
+		if not O.time <= until < math.inf:
+			raise ValueError(f"until = {until} s must not lie before the present time, {O.time} s; for a number of steps give steps=")
+		steps = math.ceil((until - O.time) / O.dt - 1e-9)
+	elif not (isinstance(steps, numbers.Integral) and steps >= 0):
+		raise ValueError(f"steps = {steps!r} must be a whole number, 0 or more")
+	_require_engine()
+	bar = tqdm(total=steps, unit="step", disable=None if progress else True)
+	end, piece = O.iter + steps, 1
+	with bar:
+		while O.iter < end:
+			begin, target, clock = O.iter, min(O.iter + piece, end), time.perf_counter()
+			O.run(target - begin, True)
+			bar.update(O.iter - begin)
+			if O.iter < target:
+				break  # paused
+			# O.run looks for its end only every 40 ms, so pieces are long: half a second, which is also how often the bar moves and Ctrl-C is heard
+			piece = max(1, round(piece * min(10, 0.5 / (time.perf_counter() - clock))))
+
+
+def _require_engine():
+	if any(isinstance(e, DeformableEngine) for e in O.engines):
+		return
+	if any(isinstance(b.shape, DeformableTriangle) for b in O.bodies if b):
+		raise RuntimeError("O.engines has no DeformableEngine, so the deformable triangles would not move; add DeformableEngine() after the engines that add forces")
