@@ -5,15 +5,20 @@
 namespace yade::ddem {
 
 namespace {
-	using Batch            = xsimd::batch<double, xsimd::sse2>;
+	using Batch            = xsimd::make_sized_batch_t<double, 2>;
 	constexpr auto updates = blockUpdates<Batch>(std::make_index_sequence<ConcreteEffects::All + 1>());
+}
+
+ConcreteBlockUpdate concreteBlockUpdateBaseline(unsigned effects)
+{
+	concreteUpdate(effects); // throws for an unknown bit
+	return updates[effects];
 }
 
 ConcreteBlockUpdate concreteBlockUpdate(unsigned effects)
 {
-	concreteUpdate(effects); // throws for an unknown bit
-	const ConcreteBlockUpdate wide = concreteBlockUpdateAvx2(effects);
-	return wide ? wide : updates[effects];
+	const ConcreteBlockUpdate baseline = concreteBlockUpdateBaseline(effects), wide = concreteBlockUpdateAvx2(effects);
+	return wide ? wide : baseline;
 }
 
 } // namespace yade::ddem

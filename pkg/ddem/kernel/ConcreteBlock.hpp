@@ -16,6 +16,9 @@ using ConcreteBlockUpdate = void (*)(
 /// The block update for a mask of effects and this processor; pick it once per group of elements. Throws std::invalid_argument for an unknown bit.
 ConcreteBlockUpdate concreteBlockUpdate(unsigned effects);
 
+/// The block update in the instructions that every processor of the architecture has.
+ConcreteBlockUpdate concreteBlockUpdateBaseline(unsigned effects);
+
 /// The AVX2 block update, or null where the processor or the build has none.
 ConcreteBlockUpdate concreteBlockUpdateAvx2(unsigned effects);
 

@@ -58,61 +58,19 @@ degradedStress(double lambda, double twoShear, const Number& effect, const Plane
 	return (lambda * doubleDot(delta, strain)) * delta + twoShear * sandwich(delta, strain);
 }
 
-/// Crack-normal stress loss:σ [Pa] (the sign of σ_Ω = N_Ω:σ) as a quadratic polynomial in the effect, which is not known before it.
-template <class Number> struct CrackNormalStress {
-	Number constant, linear, quadratic;
-
-	Number at(const Number& effect) const { return constant + effect * (linear + effect * quadratic); }
-};
-
+/// How open the crack is, from 0 (closed: σ_Ω < 0) to 1 (open: σ_Ω ≥ 0), σ_Ω = N_Ω:σ being the crack-normal stress: Zubelewicz (2018), section 3.
+/// σ_Ω depends on the openness itself, because an open crack is the softer one: under lateral stress both states may agree with their own σ_Ω, or neither, and
+/// a switch that looks at the stress of the step before then flips at every step. Here σ_Ω is the stress that the closed crack would carry. That makes the
+/// openness, and so the stress, a unique function of the elastic strain, and agrees with the definition wherever that has one answer.
+/// The openness falls linearly to 0 at σ_Ω = −closureBand: closing at once makes the shear stress jump.
 template <class Number>
-inline CrackNormalStress<Number> crackNormalStress(double lambda, double twoShear, const PlaneTensorOf<Number>& loss, const PlaneTensorOf<Number>& strain)
-{
-	// Δ:ε = tr ε − effect·loss:ε and loss:Δ = tr loss − effect·loss:loss; likewise loss:(Δ.ε.Δ)
-	const PlaneTensorOf<Number> squared = symmetricProduct(loss, loss), cubed = sandwich(loss, loss);
-	const Number                volumetric = trace(strain), along = doubleDot(loss, strain), size = trace(loss), square = trace(squared);
-	const Number                l = lambda * along;
-	return { lambda * size * volumetric + twoShear * along,
-		 -l * size - lambda * square * volumetric - 2 * twoShear * doubleDot(squared, strain),
-		 l * square + twoShear * doubleDot(cubed, strain) };
-}
-
-/// How open the crack is, from 0 (closed: σ_Ω < 0) to 1 (open: σ_Ω ≥ 0): Zubelewicz (2018), section 3.
-/// σ_Ω depends on the openness, because an open crack is the softer one. So the openness is solved for: `closed`, `middle`, `open` are σ_Ω [Pa] with the
-/// openness 0, ½, 1 (σ_Ω is quadratic in it).
-/// - One state agrees with its own σ_Ω: that one.
-/// - Neither does (lateral compression shuts the crack when it is soft, and not when it is stiff): the crack faces touch without stress, σ_Ω = 0. A plain
-/// switch would flip at every step here.
-/// - Both do: it stays what it was (`wasOpen`).
-/// With `band` > 0 [Pa] the openness falls linearly from 1 at σ_Ω = 0 to 0 at σ_Ω = −band.
-template <class Number, class Bool>
-inline Number crackOpenness(const Number& closed, const Number& middle, const Number& open, const Number& band, const Bool& wasOpen)
+inline Number crackOpenness(const PreparedConcrete& concrete, const DamageMeasure<Number>& damage, const PlaneTensorOf<Number>& elasticStrain)
 {
 	using std::max;
-	using std::min;
-	using std::sqrt;
-	const auto canOpen = open >= 0, canClose = closed < -band;
-	// where closed ≥ −band and open < 0 there is one root in [0, 1] of constant + linear o + quadratic o², which falls from ≥ 0 to < 0
-	const Number constant    = closed + band;
-	const Number quadratic   = 2 * (open + closed) - 4 * middle;
-	const Number linear      = open - closed - quadratic - band;
-	const Number denominator = sqrt(max(linear * linear - 4 * quadratic * constant, Number(0))) - linear;
-	const Number touching    = select(denominator > 0, max(Number(0), min(2 * constant / denominator, Number(1))), Number(0));
-	return select(canOpen && (wasOpen || !canClose), Number(1), select(canClose, Number(0), touching));
-}
-
-/// Openness of the crack [-] at an elastic strain.
-template <class Number, class Bool>
-inline Number openCrack(const PreparedConcrete& concrete, const DamageMeasure<Number>& damage, const PlaneTensorOf<Number>& elasticStrain, const Bool& wasOpen)
-{
-	const CrackNormalStress<Number> normal = crackNormalStress(concrete.lambda, concrete.twoShear, damage.loss, elasticStrain);
-	const Number                    closed = stiffnessEffect(concrete, Number(0)), open = stiffnessEffect(concrete, Number(1));
-	return crackOpenness(
-	        normal.at(closed),
-	        normal.at(0.5 * (closed + open)),
-	        normal.at(open),
-	        (1 - damage.integrity) * concrete.parameters.closureBand, // the normal stress carries the factor η_0
-	        wasOpen);
+	const Number                closed = stiffnessEffect(concrete, Number(0));
+	const PlaneTensorOf<Number> stress = degradedStress(concrete.lambda, concrete.twoShear, closed, damage.loss, elasticStrain);
+	const Number                normal = doubleDot(damage.loss, stress), band = (1 - damage.integrity) * concrete.parameters.closureBand; // both times η_0
+	return select(normal >= 0, Number(1), max(Number(0), 1 + normal / band));
 }
 
 } // namespace yade::ddem

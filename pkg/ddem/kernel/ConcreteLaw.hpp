@@ -47,10 +47,9 @@ inline void advanceConcrete(
 	DamageMeasure<Number>       damage { zero, Number(1) };
 	Number                      open(1), effect(0);
 	if constexpr (damages) {
-		damage             = measureDamage(concrete, state.damage);
-		const auto wasOpen = doubleDot(damage.loss, state.stress) >= (damage.integrity - 1) * (0.5 * concrete.parameters.closureBand);
-		open               = openCrack(concrete, damage, trialStrain, wasOpen);
-		effect             = stiffnessEffect(concrete, open);
+		damage = measureDamage(concrete, state.damage);
+		open   = crackOpenness(concrete, damage, trialStrain);
+		effect = stiffnessEffect(concrete, open);
 	}
 	const auto stressOf = [&](const DamageMeasure<Number>& with, const PlaneTensorOf<Number>& elasticStrain) {
 		if constexpr (damages) return degradedStress(lambda, twoShear, effect, with.loss, elasticStrain);

@@ -30,7 +30,7 @@ struct ConcreteParameters {
 	double damageLimit              = 1;      ///< Largest loss η_max of stiffness, at most 1 [-]
 	double referenceRate            = 1;      ///< Strain rate ė_0 that scales the strain rate [1/s]
 	double sharingTolerance         = 0.05;   ///< Principal stresses closer than this, relative to the largest, share the flow [-]
-	double closureBand              = 0;      ///< Crack-normal stress over which a crack closes [Pa]; 0: closes at zero stress
+	double closureBand              = 1e6;    ///< Crack-normal stress over which a crack closes [Pa]; 0: closes at once at zero stress
 	double residual                 = 1e-6;   ///< Share of strength and of stiffness that complete damage leaves [-]
 
 	/// Throws std::invalid_argument that names the parameter, its value, its unit and what to do.
