@@ -11,7 +11,7 @@ import os
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import EllipseCollection, LineCollection, PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
@@ -76,7 +76,7 @@ def mesh(mesh, ax=None, file=None):
 		return _finish(ax, file)
 
 
-def field(mesh, values, label, file=None, ax=None, displacement=None, scale=1.0, limits=None, signed=False, edges=False):
+def field(mesh, values, label, file=None, ax=None, displacement=None, scale=1.0, limits=None, signed=False, edges=False, colorbar=True):
 	"""Draw a field on a mesh in colours and return the axes.
 
 	:param mesh: a mesh, or (nodes [m], triangles)
@@ -87,6 +87,7 @@ def field(mesh, values, label, file=None, ax=None, displacement=None, scale=1.0,
 	:param limits: (smallest, largest) value of the colour bar; those of the values when left out
 	:param signed: use a colour map with white at zero, and limits symmetric about it
 	:param edges: draw the triangles' edges
+	:param colorbar: False leaves it out, for several axes with one common colour bar: ``fig.colorbar(ax.collections[0], ax=axes)``
 	"""
 	nodes, triangles = _parts(mesh)
 	values, count = np.asarray(values, dtype=float), (len(nodes), len(triangles))
@@ -95,11 +96,7 @@ def field(mesh, values, label, file=None, ax=None, displacement=None, scale=1.0,
 	if displacement is not None and np.shape(displacement) != nodes.shape:
 		raise ValueError(f"field {label!r}: displacement has shape {np.shape(displacement)} instead of {nodes.shape}")
 	shape = nodes if displacement is None else nodes + scale * np.asarray(displacement)
-	finite = values[np.isfinite(values)]
-	low, high = limits or ((finite.min(), finite.max()) if len(finite) else (0, 1))
-	if signed and not limits:
-		low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
-	look = {"cmap": DIVERGING if signed else SEQUENTIAL, "clim": (low, high if high > low else low + (abs(low) or 1.0)), "rasterized": True}
+	look, extend = _look(values, limits, signed)
 
 	with rc_context(STYLE):
 		ax, unit = _axes(ax, np.vstack([nodes, shape]))
@@ -118,10 +115,50 @@ def field(mesh, values, label, file=None, ax=None, displacement=None, scale=1.0,
 			ax.add_collection(LineCollection(nodes[_border(triangles)] * unit, colors="0.5", linewidths=0.5))
 			if scale != 1:
 				ax.set_title(f"displacement × {scale:g}")
-		extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
-		beyond = bool(len(finite) and finite.min() < low), bool(len(finite) and finite.max() > high)
-		ax.figure.colorbar(drawn, ax=ax, label=label, extend=extend[beyond], shrink=0.9, aspect=25)
+		if colorbar:
+			ax.figure.colorbar(drawn, ax=ax, label=label, extend=extend, shrink=0.9, aspect=25)
 		return _finish(ax, file)
+
+
+def spheres(centres, radii, values, label, file=None, ax=None, limits=None, signed=False, colorbar=True, cracks=None):
+	"""Draw spheres as seen along z, the ones in front over those behind, in colours of a value each, and return the axes.
+
+	:param centres: (n, 3) [m]; (n, 2) for one layer
+	:param radii: (n,) [m]
+	:param values: (n,)
+	:param label: text at the colour bar; end it with the unit in brackets
+	:param cracks: (k, 2, 2) lines [m] drawn over the spheres
+	:param limits, signed, colorbar: as in :func:`field`
+	"""
+	centres, radii, values = (np.asarray(array, dtype=float) for array in (centres, radii, values))
+	if not len(centres) == len(radii) == len(values):
+		raise ValueError(f"spheres {label!r}: {len(centres)} centres, {len(radii)} radii and {len(values)} values")
+	look, extend = _look(values, limits, signed)
+	front = np.argsort(centres[:, 2], kind="stable") if centres.shape[1] == 3 else np.arange(len(centres))
+	with rc_context(STYLE):
+		ax, unit = _axes(ax, np.vstack([centres[:, :2] - radii[:, None], centres[:, :2] + radii[:, None]]))
+		diameters = 2 * unit * radii[front]
+		drawn = EllipseCollection(
+			diameters, diameters, np.zeros(len(front)), units="xy", offsets=unit * centres[front, :2], offset_transform=ax.transData, array=values[front],
+			edgecolors="0.25", linewidths=0.15, **look
+		)
+		ax.add_collection(drawn)
+		if cracks is not None and len(cracks):
+			ax.add_collection(LineCollection(unit * np.asarray(cracks), colors="0.1", linewidths=0.5, capstyle="round", rasterized=True))
+		if colorbar:
+			ax.figure.colorbar(drawn, ax=ax, label=label, extend=extend, shrink=0.9, aspect=25)
+		return _finish(ax, file)
+
+
+def _look(values, limits, signed):
+	"""Colours of a field, and at which ends the colour bar goes on beyond them."""
+	finite = values[np.isfinite(values)]
+	low, high = limits or ((finite.min(), finite.max()) if len(finite) else (0, 1))
+	if signed and not limits:
+		low, high = -max(abs(low), abs(high)), max(abs(low), abs(high))
+	extend = {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}
+	beyond = bool(len(finite) and finite.min() < low), bool(len(finite) and finite.max() > high)
+	return {"cmap": DIVERGING if signed else SEQUENTIAL, "clim": (low, high if high > low else low + (abs(low) or 1.0)), "rasterized": True}, extend[beyond]
 
 
 def _parts(mesh):

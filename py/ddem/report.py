@@ -1,0 +1,157 @@
+# GPL v2 or later, see LICENSE.
+"""Report of compression tests: table, summary.json, a CSV a model, pictures, and a report.html that holds everything.
+
+Works on finished runs (:class:`runs.Run`), so a report can be made again without the scene::
+
+	report = ddem.report.Report(runs, folder="out", title="…", settings={...}, command="…")
+	report.write()
+	print(report.table())
+"""
+import base64
+import datetime
+import json
+import os
+import platform
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+from . import plots, report_figures
+from .runs import cost_ratios
+
+_TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
+
+#: rows of the table: name in the summary, text, unit shown, factor to it, format; None: a line
+ROWS = (
+	("particles", "particles", "", 1, "{:,d}"),
+	("degrees_of_freedom", "degrees of freedom", "", 1, "{:,d}"),
+	None,
+	("ucs_MPa", "strength (UCS)", "MPa", 1, "{:.1f}"),
+	("young_GPa", "Young's modulus", "GPa", 1, "{:.1f}"),
+	("strain_at_peak", "strain at the peak", "%", 100, "{:.3f}"),
+	("damage_at_peak", "damage at the peak", "", 1, "{:.3f}"),
+	("damage_at_end", "damage at the end", "", 1, "{:.3f}"),
+	("strain_at_end", "strain at the end", "%", 100, "{:.3f}"),
+	("energy_error", "energy error", "", 1, "{:.1e}"),
+	None,
+	("dt_s", "time step", "µs", 1e6, "{:.3f}"),
+	("steps", "steps", "", 1, "{:,d}"),
+	("wall_s", "wall time", "s", 1, "{:.1f}"),
+	("ns_per_particle_step", "per particle and step", "ns", 1, "{:,.0f}"),
+	("ns_per_degree_of_freedom_step", "per degree of freedom and step", "ns", 1, "{:,.0f}"),
+)
+
+
+class Report:
+	"""The report of one or two runs.
+
+	:param runs: list of :class:`runs.Run`
+	:param folder: where everything goes; made when missing
+	:param title: heading of the report
+	:param settings: (name, value with unit, meaning) of what both tests share
+	:param command: the command line that made it
+	:param options: plain values of all options and the seed, for summary.json
+	:param versions: name -> version of the programs used
+	:param notes: sentences for the report: choices, calibration, limits
+	:param pictures: False leaves the pictures out
+	:param pdf: write each picture as a PDF as well
+	"""
+
+	def __init__(self, runs, folder, title, settings=(), command="", options=None, versions=None, notes=(), pictures=True, pdf=False):
+		if not runs:
+			raise ValueError("a report needs at least one run")
+		self.runs, self.folder, self.title, self.settings, self.command = list(runs), str(folder), title, list(settings), command
+		self.options, self.versions, self.notes = dict(options or {}), dict(versions or {}), list(notes)
+		self.pictures, self.pdf = pictures, pdf
+		self.written = datetime.datetime.now().astimezone().replace(microsecond=0)
+
+	def summary(self):
+		"""What summary.json holds."""
+		return {
+			"title": self.title,
+			"written": self.written.isoformat(),
+			"command": self.command,
+			"options": self.options,
+			"versions": self.versions,
+			"machine": {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count(), "threads": self.runs[0].threads},
+			"models": {run.model: {**run.summary(), "parameters": {name: value for name, value, _ in run.parameters}} for run in self.runs},
+			"cost_ratio_deformable_to_rigid": cost_ratios(self.runs),
+		}
+
+	def table_rows(self):
+		"""(text, unit, one formatted value a run) for the table; None for a line."""
+		summaries = [run.summary() for run in self.runs]
+		rows = []
+		for row in ROWS:
+			if row is None:
+				rows.append(None)
+				continue
+			name, text, unit, factor, form = row
+			rows.append((text, unit, [_formatted(summary[name], factor, form) for summary in summaries]))
+		return rows
+
+	def table(self):
+		"""The figures of all runs side by side, for a terminal."""
+		rows = self.table_rows()
+		titles = [run.title for run in self.runs]
+		first = max(len(f"{text} [{unit}]") if unit else len(text) for text, unit, _ in filter(None, rows))
+		widths = [max(len(title), *(len(values[i]) for _, _, values in filter(None, rows))) for i, title in enumerate(titles)]
+		rule = "-" * (first + sum(width + 3 for width in widths))
+		lines = [" " * first + "".join(f"   {title:>{width}}" for title, width in zip(titles, widths)), rule]
+		for row in rows:
+			if row is None:
+				lines.append(rule)
+				continue
+			text, unit, values = row
+			lines.append(f"{f'{text} [{unit}]' if unit else text:<{first}}" + "".join(f"   {value:>{width}}" for value, width in zip(values, widths)))
+		return "\n".join(lines)
+
+	def write(self):
+		"""Write all files and return the path of report.html."""
+		os.makedirs(self.folder, exist_ok=True)
+		for run in self.runs:
+			run.series.write(self._path(f"{run.model}.csv"))
+		with open(self._path("summary.json"), "w") as file:
+			json.dump(self.summary(), file, indent=2, allow_nan=False)
+			file.write("\n")
+		pictures = self._write_pictures() if self.pictures else {}
+		page = self.html(pictures)
+		with open(self._path("report.html"), "w", encoding="utf-8") as file:
+			file.write(page)
+		return self._path("report.html")
+
+	def html(self, pictures):
+		"""The page; *pictures* by name as bytes of PNG files."""
+		environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+		summary = self.summary()
+		return environment.get_template("compression.html").render(
+			title=self.title, written=self.written, command=self.command, settings=self.settings, notes=self.notes, versions=self.versions, machine=summary["machine"],
+			runs=self.runs, by_model={run.model: run for run in self.runs}, summaries=summary["models"], rows=self.table_rows(),
+			ratios=summary["cost_ratio_deformable_to_rigid"], pictures={name: base64.b64encode(data).decode() for name, data in pictures.items()}, options=self.options
+		)
+
+	def _write_pictures(self):
+		pictures = {}
+		for name, draw in report_figures.ALL.items():
+			figure = draw(self.runs)
+			plots.save(figure, self._path(f"{name}.png"))
+			if self.pdf:
+				plots.save(figure, self._path(f"{name}.pdf"))
+			with open(self._path(f"{name}.png"), "rb") as file:
+				pictures[name] = file.read()
+		return pictures
+
+	def _path(self, name):
+		return os.path.join(self.folder, name)
+
+
+def processor():
+	"""Name of the processor."""
+	try:
+		with open("/proc/cpuinfo") as file:
+			return next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), platform.machine())
+	except OSError:
+		return platform.machine()
+
+
+def _formatted(value, factor, form):
+	return "–" if value is None else form.format(factor * value).replace(",", "\u202f")  # narrow space between thousands
