@@ -25,10 +25,51 @@ template <class Number> inline void bookEnergy(const ConcreteStateOf<Number>& ol
 	now.stiffeningEnergy   = old.stiffeningEnergy + (released - byDamage);
 }
 
+/// What the flow of one step adds.
+template <class Number> struct FlowIncrement {
+	PlaneTensorOf<Number> plasticStrain, damage; // [-]
+};
+
+/// Flow from the elastic predictor: along its M_p, the amount implicit, and the damage that it does; Zubelewicz (2018), eqs. 5-8. `stressOf` is the elasticity
+/// of the predictor, `strain` = ė_N dt.
+template <unsigned effects, class Number, class Elasticity>
+inline FlowIncrement<Number> flowIncrement(
+        const PreparedConcrete&      concrete,
+        const Number&                fractureEnergy,
+        const PlaneTensorOf<Number>& predicted,
+        const Elasticity&            stressOf,
+        const DamageMeasure<Number>& damage,
+        const Number&                open,
+        const Number&                strain,
+        double                       dt)
+{
+	const Number                    zero(0), one(1);
+	FlowIncrement<Number>           increment { { zero, zero, zero, zero }, { zero, zero, zero, zero } };
+	const PrincipalStresses<Number> principal = principalStresses(predicted, concrete.parameters.sharingTolerance);
+	const Number                    friction  = frictionAt(concrete, pressure(predicted));
+	const PlaneTensorOf<Number>     flow      = flowTensor(principal, friction);
+	const Number                    trial     = equivalentStress(flow, predicted);
+	const auto                      yields    = trial > 0 && strain > 0;
+	if (!any(yields)) return increment;
+
+	const Number amount     = dt * rateFactor < (effects & ConcreteEffects::Rate) != 0 > (concrete, strain * (1 / dt)); // ė_eq dt at σ_eq = σ_p
+	const Number relaxation = amount * (0.25 * doubleDot(flow, stressOf(flow)));
+	const auto   solution   = solveFlow(concrete.flowPower, trial, relaxation, concrete.parameters.strength * damage.integrity);
+	const Number plastic    = select(yields, amount * solution.intensity, zero); // ė_eq dt
+	increment.plasticStrain = (0.5 * plastic) * flow;
+	if constexpr ((effects & ConcreteEffects::Damage) != 0) {
+		// where there is no damage yet, the largest stress says whether its crack would be open
+		const Number growing = select(damage.integrity < 1, open, select(principal.s1 >= 0, one, zero));
+		const Number work    = select(yields, solution.equivalent * plastic, zero);
+		increment.damage     = damageGrowth(concrete, fractureEnergy, damageTensor(principal, friction), growing, work);
+	}
+	return increment;
+}
+
 /// One explicit step of a sub-element to the strain `newStrain` within `dt` [s] > 0; `fractureEnergy` [J/m³] is the element's own G_f.
-/// Elastic predictor with the damage and the modulus factor of the step before; flow along the predictor's M_p, its amount implicit; then damage, and the
-/// stress that follows from the new elastic strain and damage. First order in the strain increment; finite for any finite strain and rate.
-/// A G_f at or below zero counts as PreparedConcrete::smallestEnergy. Number is double or a SIMD batch.
+/// Elastic predictor with the damage and the stiffening of the step before; flow; then the stress that follows from the new elastic strain and damage. First
+/// order in the strain increment; finite for any finite strain and rate. A G_f at or below zero counts as PreparedConcrete::smallestEnergy. Number is double or
+/// a SIMD batch; a lane of a batch does not feel the others.
 template <unsigned effects, class Number>
 inline void advanceConcrete(
         const PreparedConcrete&      concrete,
@@ -37,60 +78,41 @@ inline void advanceConcrete(
         double                       dt,
         ConcreteStateOf<Number>&     state)
 {
-	constexpr bool flows = effects & ConcreteEffects::Flow, rates = effects & ConcreteEffects::Rate, damages = effects & ConcreteEffects::Damage,
+	constexpr bool flows = effects & ConcreteEffects::Flow, damages = effects & ConcreteEffects::Damage,
 	               stiffens = effects & ConcreteEffects::EquationOfState, books = effects & ConcreteEffects::Energy;
-	const double lambda = concrete.lambda, twoShear = concrete.twoShear;
+	const PlaneTensorOf<Number> elasticStrain = newStrain - state.plasticStrain;
 
-	// elasticity as the step begins
-	const auto                  zero        = PlaneTensorOf<Number> { Number(0), Number(0), Number(0), Number(0) };
-	const PlaneTensorOf<Number> trialStrain = newStrain - state.plasticStrain;
-	DamageMeasure<Number>       damage { zero, Number(1) };
-	Number                      open(1), effect(0);
+	DamageMeasure<Number> damage {}, grown {};
+	Number                open(1), effect(0), factor(1);
+	damage.integrity = Number(1);
 	if constexpr (damages) {
-		damage = measureDamage(concrete, state.damage);
-		open   = crackOpenness(concrete, damage, trialStrain);
-		effect = stiffnessEffect(concrete, open);
+		damage = grown = measureDamage(concrete, state.damage);
+		open           = crackOpenness(concrete, damage, elasticStrain);
+		effect         = stiffnessEffect(concrete, open);
 	}
-	const auto stressOf = [&](const DamageMeasure<Number>& with, const PlaneTensorOf<Number>& elasticStrain) {
-		if constexpr (damages) return degradedStress(lambda, twoShear, effect, with.loss, elasticStrain);
+	const auto stressOf = [&](const DamageMeasure<Number>& with, const PlaneTensorOf<Number>& strain) {
+		if constexpr (damages) return degradedStress(concrete.lambda, concrete.twoShear, effect, with.loss, strain);
 		else
-			return elasticStress(lambda, twoShear, elasticStrain);
+			return elasticStress(concrete.lambda, concrete.twoShear, strain);
 	};
-
-	ConcreteStateOf<Number> next = state;
-	next.strain                  = newStrain;
-	DamageMeasure<Number> grown  = damage;
-	PlaneTensorOf<Number> stress = stressOf(damage, trialStrain);
+	PlaneTensorOf<Number>   stress = stressOf(damage, elasticStrain);
+	ConcreteStateOf<Number> next   = state;
+	next.strain                    = newStrain;
 
 	if constexpr (flows) {
-		Number factor(1);
-		if constexpr (stiffens) factor = 1 + state.stiffening;
-		const PlaneTensorOf<Number>     predicted = factor * stress;
-		const PrincipalStresses<Number> principal = principalStresses(predicted, concrete.parameters.sharingTolerance);
-		const Number                    friction  = frictionAt(concrete, pressure(predicted));
-		const PlaneTensorOf<Number>     flow      = flowTensor(principal, friction);
-		const Number                    trial     = equivalentStress(flow, predicted);
-		const Number                    strain    = strainRateMeasure(newStrain - state.strain); // ė_N dt
-		const auto                      yields    = trial > 0 && strain > 0;
-		if (any(yields)) {
-			const Number               amount    = dt * rateFactor<rates>(concrete, strain * (1 / dt)); // ė_eq dt at σ_eq = σ_p
-			const Number               stiffness = 0.25 * factor * doubleDot(flow, stressOf(damage, flow));
-			const FlowSolution<Number> solution
-			        = solveFlow(concrete.flowPower, trial, stiffness * amount, concrete.parameters.strength * damage.integrity);
-			const Number plastic = select(yields, amount * solution.intensity, Number(0)); // ė_eq dt
-
-			next.plasticStrain = state.plasticStrain + (0.5 * plastic) * flow;
+		const Number strain = strainRateMeasure(newStrain - state.strain); // ė_N dt
+		if (any(strain > 0)) {
+			if constexpr (stiffens) factor = 1 + state.stiffening;
+			const auto predictor = [&](const PlaneTensorOf<Number>& along) { return factor * stressOf(damage, along); };
+			const auto increment = flowIncrement<effects>(concrete, fractureEnergy, factor * stress, predictor, damage, open, strain, dt);
+			next.plasticStrain   = state.plasticStrain + increment.plasticStrain;
 			if constexpr (damages) {
-				// where there is no damage yet, the largest stress says whether its crack would be open
-				const Number growing = select(damage.integrity < 1, open, select(principal.s1 >= 0, Number(1), Number(0)));
-				const Number work    = select(yields, solution.equivalent * plastic, Number(0));
-				next.damage = state.damage + damageGrowth<Number>(concrete, fractureEnergy, damageTensor(principal, friction), growing, work);
+				next.damage = state.damage + increment.damage;
 				grown       = measureDamage(concrete, next.damage);
 			}
 			stress = stressOf(grown, newStrain - next.plasticStrain);
 		}
 	}
-	Number factor(1);
 	if constexpr (stiffens) {
 		next.stiffening = modulusStiffening(concrete, pressure(stress));
 		factor          = 1 + next.stiffening;
