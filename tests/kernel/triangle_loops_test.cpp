@@ -67,9 +67,8 @@ struct LooseElements {
 	{
 		ElementArrays a {};
 		for (std::size_t e = 0; e < 3; e++) {
-			a.vertex[e]  = vertex[e].data();
-			a.cornerX[e] = cornerForce.data() + 2 * e * size();
-			a.cornerY[e] = cornerForce.data() + (2 * e + 1) * size();
+			a.vertex[e]      = vertex[e].data();
+			a.cornerForce[e] = cornerForce.data() + 2 * e * size();
 		}
 		for (std::size_t c = 0; c < 4; c++)
 			a.arm[c] = arm[c].data();
@@ -87,7 +86,7 @@ struct LooseElements {
 	{
 		std::array<double, 9> result;
 		for (std::size_t c = 0; c < 6; c++)
-			result[c] = cornerForce[c * size() + i];
+			result[c] = cornerForce[2 * (c / 2 * size() + i) + c % 2];
 		result[6] = coreForce[2 * i];
 		result[7] = coreForce[2 * i + 1];
 		result[8] = coreMoment[i];

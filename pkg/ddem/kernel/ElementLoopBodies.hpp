@@ -21,10 +21,10 @@ template <class Frame, class Number> inline LoadedElement<Number> loadElement(co
 	LoadedElement<Number>     element;
 	const PlaneVector<Number> first { L::load(a.arm[0] + i), L::load(a.arm[1] + i) };
 	const PlaneVector<Number> second { L::load(a.arm[2] + i), L::load(a.arm[3] + i) };
-	element.reference = TriangleReference<Number>(first, second);
-	const PlaneVector<Number> centre { L::loadPairs(a.corePosition + 2 * i, 0), L::loadPairs(a.corePosition + 2 * i, 1) };
+	element.reference                = TriangleReference<Number>(first, second);
+	const PlaneVector<Number> centre = L::loadPoints(a.corePosition + 2 * i);
 	for (int e = 0; e < 3; e++)
-		element.fromCentre[e] = PlaneVector<Number> { L::gather(a.nodePosition, a.vertex[e] + i, 2, 0), L::gather(a.nodePosition, a.vertex[e] + i, 2, 1) } - centre;
+		element.fromCentre[e] = L::gatherPoints(a.nodePosition, a.vertex[e] + i) - centre;
 	Number angle(0);
 	if constexpr (Frame::coreRotates) angle = L::load(a.coreAngle + i);
 	element.frame = Frame::rotation(element.reference, element.fromCentre, angle);
@@ -33,15 +33,14 @@ template <class Frame, class Number> inline LoadedElement<Number> loadElement(co
 	return element;
 }
 
-template <class Frame, class Number> inline void storeForces(const ElementArrays& a, std::size_t i, const LoadedElement<Number>& element, const RelativeDisplacements<Number>& q)
+template <class Frame, class Number>
+inline void storeForces(const ElementArrays& a, std::size_t i, const LoadedElement<Number>& element, const RelativeDisplacements<Number>& q)
 {
-	using L = Lanes<Number>;
+	using L                           = Lanes<Number>;
 	const ElementForces<Number> force = Frame::distribute(element.reference, element.fromCentre, element.frame, element.du, q);
-	for (int e = 0; e < 3; e++) {
-		L::store(a.cornerX[e] + i, force.vertex[e].x);
-		L::store(a.cornerY[e] + i, force.vertex[e].y);
-	}
-	L::storePairs(a.coreForce + 2 * i, force.core.x, force.core.y);
+	for (int e = 0; e < 3; e++)
+		L::storePoints(a.cornerForce[e] + 2 * i, force.vertex[e]);
+	L::storePoints(a.coreForce + 2 * i, force.core);
 	if constexpr (Frame::coreRotates) L::store(a.coreMoment + i, force.moment);
 }
 

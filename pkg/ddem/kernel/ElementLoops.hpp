@@ -12,9 +12,8 @@ struct ElementArrays {
 	const double*           arm[4];
 	const double*           nodePosition;
 	const double*           corePosition;
-	const double*           coreAngle; ///< null unless cores rotate
-	double*                 cornerX[3];
-	double*                 cornerY[3];
+	const double*           coreAngle;      ///< null unless cores rotate
+	double*                 cornerForce[3]; ///< x, y of corner e of every triangle
 	double*                 coreForce;
 	double*                 coreMoment; ///< null unless cores rotate
 	const PreparedConcrete* concrete;   ///< of concrete groups

@@ -2,6 +2,8 @@
 // Loads and stores of one number or of a SIMD batch, so that the element loops are written once.
 #pragma once
 
+#include <pkg/ddem/kernel/PlaneVector.hpp>
+
 #include <xsimd/xsimd.hpp>
 
 #include <cstddef>
@@ -15,43 +17,49 @@ template <> struct Lanes<double> {
 	static constexpr std::size_t width = 1;
 	static double                load(const double* from) { return *from; }
 	static void                  store(double* to, double value) { *to = value; }
-	static double                gather(const double* from, const std::int32_t* index, int stride, int offset) { return from[stride * *index + offset]; }
-	/// Component of interleaved pairs (x, y), and its inverse.
-	static double loadPairs(const double* from, int component) { return from[component]; }
-	static void   storePairs(double* to, double x, double y)
+	static double                sum(double value) { return value; }
+	/// Points that lie behind each other as x, y.
+	static PlaneVector<double> loadPoints(const double* from) { return { from[0], from[1] }; }
+	static void                storePoints(double* to, const PlaneVector<double>& value)
 	{
-		to[0] = x;
-		to[1] = y;
+		to[0] = value.x;
+		to[1] = value.y;
 	}
-	static double sum(double value) { return value; }
+	/// Points of the given indices.
+	static PlaneVector<double> gatherPoints(const double* from, const std::int32_t* index) { return loadPoints(from + 2 * std::ptrdiff_t(*index)); }
 };
 
+#if defined(__AVX2__)
+/// Four lanes. Points are loaded whole, two coordinates at once, and transposed in registers: faster than gather instructions or single loads.
 template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
 	using Batch                        = xsimd::batch<double, Arch>;
-	static constexpr std::size_t width = Batch::size;
-	static Batch                 load(const double* from) { return Batch::load_unaligned(from); }
-	static void                  store(double* to, const Batch& value) { value.store_unaligned(to); }
-	/// Scalar loads: on the processors of today as fast as the gather instruction, and free of its index conversions.
-	static Batch gather(const double* from, const std::int32_t* index, int stride, int offset)
-	{
-		alignas(Arch::alignment()) double lane[width];
-		for (std::size_t i = 0; i < width; i++)
-			lane[i] = from[stride * index[i] + offset];
-		return Batch::load_aligned(lane);
-	}
-	static Batch loadPairs(const double* from, int component)
-	{
-		alignas(Arch::alignment()) double lane[width];
-		for (std::size_t i = 0; i < width; i++)
-			lane[i] = from[2 * i + component];
-		return Batch::load_aligned(lane);
-	}
-	static void storePairs(double* to, const Batch& x, const Batch& y)
-	{
-		xsimd::zip_lo(x, y).store_unaligned(to);
-		xsimd::zip_hi(x, y).store_unaligned(to + width);
-	}
+	static constexpr std::size_t width = 4;
+	static_assert(Batch::size == width);
+	static Batch  load(const double* from) { return Batch::load_unaligned(from); }
+	static void   store(double* to, const Batch& value) { value.store_unaligned(to); }
 	static double sum(const Batch& value) { return xsimd::reduce_add(value); }
+
+	static PlaneVector<Batch> loadPoints(const double* from)
+	{
+		const __m256d first = _mm256_loadu_pd(from), second = _mm256_loadu_pd(from + 4);
+		return split(_mm256_permute2f128_pd(first, second, 0x20), _mm256_permute2f128_pd(first, second, 0x31));
+	}
+	static void storePoints(double* to, const PlaneVector<Batch>& value)
+	{
+		const __m256d even = _mm256_unpacklo_pd(value.x, value.y), odd = _mm256_unpackhi_pd(value.x, value.y);
+		_mm256_storeu_pd(to, _mm256_permute2f128_pd(even, odd, 0x20));
+		_mm256_storeu_pd(to + 4, _mm256_permute2f128_pd(even, odd, 0x31));
+	}
+	static PlaneVector<Batch> gatherPoints(const double* from, const std::int32_t* index)
+	{
+		const auto point = [=](int lane) { return _mm_loadu_pd(from + 2 * std::ptrdiff_t(index[lane])); };
+		return split(_mm256_set_m128d(point(2), point(0)), _mm256_set_m128d(point(3), point(1)));
+	}
+
+private:
+	/// From points 0, 2 and points 1, 3.
+	static PlaneVector<Batch> split(__m256d even, __m256d odd) { return { Batch(_mm256_unpacklo_pd(even, odd)), Batch(_mm256_unpackhi_pd(even, odd)) }; }
 };
+#endif
 
 } // namespace yade::ddem

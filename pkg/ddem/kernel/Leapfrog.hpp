@@ -20,6 +20,14 @@ namespace MotionEffects {
 struct MotionSums {
 	double     speedSquared = 0; ///< not finite as soon as any velocity is not
 	StepEnergy before, after;    ///< before holds the kinetic energy as well
+
+	MotionSums& operator+=(const MotionSums& other)
+	{
+		speedSquared += other.speedSquared;
+		before += other.before;
+		after += other.after;
+		return *this;
+	}
 };
 
 /// Factor by which Cundall's local damping scales an acceleration, as in NewtonIntegrator (cundallDamp2nd).
@@ -31,14 +39,15 @@ inline double localDamping(double damping, double acceleration, double velocity,
 
 /// One degree of freedom: returns its new velocity and books its work. inverseMass 0 keeps the velocity.
 template <unsigned effects>
-inline double accelerate(double velocity, double force, double external, double gravity, double mass, double inverseMass, const StepSettings& settings, MotionSums& sums)
+inline double
+accelerate(double velocity, double force, double external, double gravity, double mass, double inverseMass, const StepSettings& settings, MotionSums& sums)
 {
 	using namespace MotionEffects;
 	double total = force;
 	if constexpr (effects & External) total += external;
 	if constexpr (effects & Gravity) total += mass * gravity;
-	double acceleration = total * inverseMass;
-	double damp         = 0;
+	double                  acceleration = total * inverseMass;
+	[[maybe_unused]] double damp         = 0;
 	if constexpr (effects & Damping) {
 		const double scale = localDamping(settings.damping, acceleration, velocity, settings.dt);
 		damp               = (scale - 1) * total;
@@ -46,51 +55,81 @@ inline double accelerate(double velocity, double force, double external, double 
 	}
 	const double next = velocity + settings.dt * acceleration;
 	if constexpr (effects & Energy) {
-		const double half = inverseMass == 0 ? 0 : 0.5 * settings.dt; // a blocked degree of freedom belongs to the outside
-		sums.before.kinetic += inverseMass == 0 ? 0 : 0.5 * mass * velocity * next;
-		sums.before.externalWork += half * external * velocity;
-		sums.after.externalWork += half * external * next;
-		sums.before.gravityWork += half * mass * gravity * velocity;
-		sums.after.gravityWork += half * mass * gravity * next;
-		sums.before.dampingLoss -= half * damp * velocity;
-		sums.after.dampingLoss -= half * damp * next;
+		const bool                    blocked = inverseMass == 0; // belongs to the outside
+		[[maybe_unused]] const double half    = blocked ? 0 : 0.5 * settings.dt;
+		sums.before.kinetic += blocked ? 0 : 0.5 * mass * velocity * next;
+		if constexpr (effects & External) {
+			sums.before.externalWork += half * external * velocity;
+			sums.after.externalWork += half * external * next;
+		}
+		if constexpr (effects & Gravity) {
+			sums.before.gravityWork += half * mass * gravity * velocity;
+			sums.after.gravityWork += half * mass * gravity * next;
+		}
+		if constexpr (effects & Damping) {
+			sums.before.dampingLoss -= half * damp * velocity;
+			sums.after.dampingLoss -= half * damp * next;
+		}
 	}
 	return next;
 }
 
+/// Sum of squares, in four strands so that it does not wait for one addition after the other.
+inline double sumOfSquares(const double* values, std::size_t n)
+{
+	double      strand[4] = { 0, 0, 0, 0 };
+	std::size_t i         = 0;
+	for (; i + 4 <= n; i += 4)
+		for (std::size_t k = 0; k < 4; k++)
+			strand[k] += values[i + k] * values[i + k];
+	for (; i < n; i++)
+		strand[0] += values[i] * values[i];
+	return (strand[0] + strand[1]) + (strand[2] + strand[3]);
+}
+
+// Sums are kept in a local variable during a loop: no array can alias it, so it stays in registers.
+
 template <unsigned effects> void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSettings& settings, MotionSums& sums)
 {
-	const bool     external = (effects & MotionEffects::External) && !points.external.empty();
-	const double   g[2]     = { settings.gravity.x, settings.gravity.y };
-	double         speed    = 0;
-	double*        position = points.position.data();
-	double*        velocity = points.velocity.data();
-	const double*  force    = points.force.data();
-	const double*  inverse  = points.inverseMass.data();
+	const bool         external      = (effects & MotionEffects::External) && !points.external.empty();
+	const StepSettings step          = settings;
+	const double       g[2]          = { step.gravity.x, step.gravity.y };
+	double* __restrict position      = points.position.data();
+	double* __restrict velocity      = points.velocity.data();
+	const double* __restrict force   = points.force.data();
+	const double* __restrict inverse = points.inverseMass.data();
+	const double* __restrict mass    = points.mass.data();
+	MotionSums local;
 	for (std::size_t p = begin; p < end; p++)
 		for (std::size_t c = 0; c < 2; c++) {
-			const std::size_t i    = 2 * p + c;
-			const double      next = accelerate<effects>(velocity[i], force[i], external ? points.external[i] : 0., g[c], points.mass[p], inverse[i], settings, sums);
-			velocity[i]            = next;
-			position[i] += settings.dt * next;
-			speed += next * next;
+			const std::size_t i = 2 * p + c;
+			const double      next
+			        = accelerate<effects>(velocity[i], force[i], external ? points.external[i] : 0., g[c], mass[p], inverse[i], step, local);
+			velocity[i] = next;
+			position[i] += step.dt * next;
 		}
-	sums.speedSquared += speed;
+	local.speedSquared = sumOfSquares(velocity + 2 * begin, 2 * (end - begin));
+	sums += local;
 }
 
 template <unsigned effects> void moveSpins(Spins& spins, std::size_t begin, std::size_t end, const StepSettings& settings, MotionSums& sums)
 {
-	constexpr unsigned here     = effects & ~unsigned(MotionEffects::Gravity); // gravity has no moment about the mass centre
-	const bool         external = (effects & MotionEffects::External) && !spins.external.empty();
-	double             speed    = 0;
+	constexpr unsigned here          = effects & ~unsigned(MotionEffects::Gravity); // gravity has no moment about the mass centre
+	const bool         external      = (effects & MotionEffects::External) && !spins.external.empty();
+	const StepSettings step          = settings;
+	double* __restrict angle         = spins.angle.data();
+	double* __restrict velocity      = spins.velocity.data();
+	const double* __restrict moment  = spins.moment.data();
+	const double* __restrict inverse = spins.inverseInertia.data();
+	const double* __restrict inertia = spins.inertia.data();
+	MotionSums local;
 	for (std::size_t i = begin; i < end; i++) {
-		const double next = accelerate<here>(
-		        spins.velocity[i], spins.moment[i], external ? spins.external[i] : 0., 0., spins.inertia[i], spins.inverseInertia[i], settings, sums);
-		spins.velocity[i] = next;
-		spins.angle[i] += settings.dt * next;
-		speed += next * next;
+		const double next = accelerate<here>(velocity[i], moment[i], external ? spins.external[i] : 0., 0., inertia[i], inverse[i], step, local);
+		velocity[i]       = next;
+		angle[i] += step.dt * next;
 	}
-	sums.speedSquared += speed;
+	local.speedSquared = sumOfSquares(velocity + begin, end - begin);
+	sums += local;
 }
 
 } // namespace yade::ddem

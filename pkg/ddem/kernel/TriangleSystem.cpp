@@ -33,18 +33,6 @@ namespace {
 		return table[wanted];
 	}
 
-	void add(StepEnergy& sum, const StepEnergy& other)
-	{
-		sum.kinetic += other.kinetic;
-		sum.elastic += other.elastic;
-		sum.rotation += other.rotation;
-		sum.plastic += other.plastic;
-		sum.damage += other.damage;
-		sum.gravityWork += other.gravityWork;
-		sum.externalWork += other.externalWork;
-		sum.dampingLoss += other.dampingLoss;
-	}
-
 	/** Lists the blocked degrees of freedom; keeps the last velocity of those known before.
 	 * \param share degrees of freedom per entry of mass.
 	 * \return the work of the change [J]: one that becomes blocked takes its kinetic energy out of the book, one that is released brings it in. */
@@ -163,8 +151,7 @@ void TriangleSystem::build()
 	for (std::size_t i = 0; i < n; i++)
 		for (std::size_t e = 0; e < 3; e++)
 			corner[next[std::size_t(vertex[e][i])]++] = std::uint32_t(e * n + i);
-	cornerForceX.assign(3 * n, 0.);
-	cornerForceY.assign(3 * n, 0.);
+	cornerForce.assign(6 * n, 0.);
 	collectConstraints();
 	pending = StepEnergy();
 }
@@ -183,9 +170,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 
 	ElementArrays arrays {};
 	for (std::size_t e = 0; e < 3; e++) {
-		arrays.vertex[e]  = vertex[e].data();
-		arrays.cornerX[e] = cornerForceX.data() + e * n;
-		arrays.cornerY[e] = cornerForceY.data() + e * n;
+		arrays.vertex[e]      = vertex[e].data();
+		arrays.cornerForce[e] = cornerForce.data() + 2 * e * n;
 	}
 	for (std::size_t c = 0; c < 4; c++)
 		arrays.arm[c] = arm[c].data();
@@ -234,8 +220,9 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 			for (std::size_t v = begin; v < end; v++) {
 				double x = 0, y = 0;
 				for (std::size_t k = cornerStart[v]; k < cornerStart[v + 1]; k++) {
-					x += cornerForceX[corner[k]];
-					y += cornerForceY[corner[k]];
+					const double* force = cornerForce.data() + 2 * std::size_t(corner[k]);
+					x += force[0];
+					y += force[1];
 				}
 				node.force[2 * v]     = x;
 				node.force[2 * v + 1] = y;
@@ -255,8 +242,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 		energy.dampingLoss  = pending.dampingLoss;
 		pending             = StepEnergy();
 		for (const auto& sum : sums) {
-			add(energy, sum.before);
-			add(pending, sum.after);
+			energy += sum.before;
+			pending += sum.after;
 		}
 		bookReactions(nodeConstraint, node.velocity, node.force, settings.dt, energy.externalWork, pending.externalWork);
 		bookReactions(coreConstraint, core.velocity, core.force, settings.dt, energy.externalWork, pending.externalWork);

@@ -47,6 +47,19 @@ struct StepSettings {
 struct StepEnergy {
 	double kinetic = 0, elastic = 0, rotation = 0, plastic = 0, damage = 0;
 	double gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< increments since the last step
+
+	StepEnergy& operator+=(const StepEnergy& other)
+	{
+		kinetic += other.kinetic;
+		elastic += other.elastic;
+		rotation += other.rotation;
+		plastic += other.plastic;
+		damage += other.damage;
+		gravityWork += other.gravityWork;
+		externalWork += other.externalWork;
+		dampingLoss += other.dampingLoss;
+		return *this;
+	}
 };
 
 /// Translations of one kind of point (nodes or cores), interleaved x, y.
@@ -144,9 +157,9 @@ private:
 		std::size_t group, begin, end;
 	};
 	std::vector<Chunk>         chunk;
-	std::vector<std::size_t>   cornerStart;                ///< nodes + 1: where a node's corners begin in corner
-	std::vector<std::uint32_t> corner;                     ///< e·triangles + triangle, by node
-	std::vector<double>        cornerForceX, cornerForceY; ///< [N], 3·triangles
+	std::vector<std::size_t>   cornerStart; ///< nodes + 1: where a node's corners begin in corner
+	std::vector<std::uint32_t> corner;      ///< e·triangles + triangle, by node
+	std::vector<double>        cornerForce; ///< x, y of every corner [N], in the order of corner's values
 	std::vector<Constraint>    nodeConstraint, coreConstraint, spinConstraint;
 	StepEnergy                 pending; ///< works of the half step after the last positions
 
