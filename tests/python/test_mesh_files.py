@@ -39,7 +39,7 @@ def test_gmsh_file(name):
 
 @pytest.mark.parametrize("ending", ["msh", "vtu", "vtk"])
 def test_round_trip(tmp_path, ending):
-	block = mesh.rectangle(0.1, 0.2, size=0.01, pattern="unstructured", regions={"steel": BAR, "foot": mesh.box(0, 0, 0.1, 0.03)})
+	block = mesh.rectangle(0.1, 0.2, size=0.01, pattern="unstructured", regions={"steel bar": BAR, "foot": mesh.box(0, 0, 0.1, 0.03)})
 	block.write(tmp_path / f"block.{ending}")
 	again = mesh.read(tmp_path / f"block.{ending}")
 	assert again.nodes.tolist() == block.nodes.tolist()
@@ -107,6 +107,11 @@ def test_truncated_vtu_names_the_line(tmp_path):
 	data = (tmp_path / "a.vtu").read_bytes()
 	with pytest.raises(ValueError, match="cut.vtu.*truncated, damaged.*line [0-9]+"):
 		mesh.read(saved(tmp_path, data[:len(data) // 2], "cut.vtu"))
+
+
+def test_unknown_kind_is_not_written(tmp_path):
+	with pytest.raises(ValueError, match="cannot write mesh file '.*a.xyzzy'"):
+		mesh.rectangle(1, 1, size=0.5).write(tmp_path / "a.xyzzy")
 
 
 def test_missing_file_and_unknown_kind(tmp_path):

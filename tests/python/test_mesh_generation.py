@@ -141,6 +141,7 @@ def test_warning_when_regular_mesh_misses_a_region():
 		mesh.rectangle(0.1, 0.2, size=0.005, regions={"steel": BAR})
 	with warnings.catch_warnings():
 		warnings.simplefilter("error")
+		mesh.rectangle(0.1, 0.2, size=0.01, regions={"steel": BAR[::-1]})  # 2 % too large
 		mesh.rectangle(0.1, 0.2, size=0.007 / 3, regions={"steel": mesh.box(0.042, 0.084, 0.056, 0.112)})
 		mesh.rectangle(0.1, 0.2, size=0.005, pattern="unstructured", regions={"steel": BAR})
 
@@ -164,6 +165,17 @@ def test_mean_edge_length_is_the_size(smoothing):
 		quality = mesh.polygon(outline, size=0.003, smoothing=smoothing).quality()
 		assert quality.mean_edge == pytest.approx(0.003, rel=0.05)
 		assert quality.longest_edge <= 1.8 * 0.003
+
+
+def test_border_is_cut_evenly():
+	# Halving 0.1 m until it is short enough would give pieces of 6.25 mm.
+	block = mesh.polygon(mesh.box(0, 0, 0.1, 0.1), size=0.005)
+	assert np.linalg.norm(np.diff(block.nodes[block.boundary_edges()], axis=1)[:, 0], axis=1) == pytest.approx(0.005)
+	wedge = mesh.polygon(mesh.box(0, 0, 0.1, 0.1), size=lambda x, y: 0.002 + 0.1 * x)
+	ends = wedge.nodes[wedge.boundary_edges()]
+	pieces = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / (0.002 + 0.1 * ends[:, :, 0].mean(axis=1))
+	assert np.median(pieces) == pytest.approx(1, abs=0.05)
+	assert (pieces < 1.2).all()
 
 
 @pytest.mark.parametrize("smoothing", [0, 10])
@@ -237,6 +249,28 @@ def test_any_convex_polygon(gaps, radius, relative_size):
 	assert len(m.nodes) - len(m.edges) + len(m.triangles) == 1
 
 
+@given(st.integers(3, 9).flatmap(lambda n: st.lists(st.tuples(st.floats(0.5, 1.5), st.floats(0.3, 1)), min_size=n, max_size=n)), st.floats(0.1, 1))
+@settings(max_examples=30, deadline=None)
+def test_any_star_shaped_polygon(arms, size):
+	# Corners as sharp and as deep as they come: no angle is promised, but the mesh is a proper one.
+	directions = 2 * math.pi * np.cumsum([gap for gap, _ in arms]) / sum(gap for gap, _ in arms)
+	assume(np.diff(np.append(directions, directions[0] + 2 * math.pi)).max() < 3)
+	corners = np.array([length for _, length in arms])[:, None] * np.column_stack([np.cos(directions), np.sin(directions)])
+	m = mesh.polygon(corners, size=size)
+	m.validate()
+	assert m.areas.sum() == pytest.approx(shoelace([*corners]), rel=1e-9)
+	assert len(m.nodes) - len(m.edges) + len(m.triangles) == 1
+
+
+def test_needle():
+	# A corner of 2 degrees: refinement ends, and only triangles there are sharp.
+	needle = [(0, 0), (1, -math.tan(math.radians(1))), (1, math.tan(math.radians(1)))]
+	m = mesh.polygon(needle, size=0.02)
+	assert m.areas.sum() == pytest.approx(math.tan(math.radians(1)))
+	assert m.angles.min() == pytest.approx(2, rel=0.01)
+	assert len(m.triangles) < 2000
+
+
 # ---- bad input ----
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
@@ -258,7 +292,9 @@ SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 		(lambda: mesh.rectangle(1, 1, lambda x, y: 0.1), r"size field needs pattern=\"unstructured\""),
 		(lambda: mesh.rectangle(1, 1, 0.1, smoothing=3), r"smoothing only for pattern=\"unstructured\""),
 		(lambda: mesh.rectangle(1, 1, 0.1, pattern="unstructured", nx=3), r"nx and ny"),
-		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(0.5, 0.5, 1.5, 0.7)}), r"region 'a' reaches out of the rectangle"),
+		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(0.5, 0.5, 1.5, 0.7)}), r"outline and region 'a' cross at \(1, 0.[57]\) m"),
+		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(2, 0, 3, 1)}), r"region 'a' lies outside of the outline at \(2.5, 0\) m; the outline spans \(0, 0\) to \(1, 1\) m"),
+		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": [(0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.9, 0.8)]}), r"region 'a' crosses itself"),
 		(lambda: mesh.rectangle(1, 1, 0.5, regions={"a": mesh.box(0.01, 0.01, 0.02, 0.02)}), r"region 'a'.* no triangle's centroid; use a smaller size"),
 		(lambda: mesh.rectangle(1, 1, 0.1, regions={"": BAR}), r"region name ''"),
 		(lambda: mesh.polygon(SQUARE, size=0), r"size is 0 m"),

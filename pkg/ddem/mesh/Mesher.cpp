@@ -64,18 +64,6 @@ namespace {
 
 	Kernel::Point_2 centroid(FaceHandle face) { return CGAL::centroid(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point()); }
 
-	double positiveSize(const Criteria& criteria, const Kernel::Point_2& at)
-	{
-		const double size = criteria.size(at.x(), at.y());
-		if (!(size > 0) || !std::isfinite(size)) {
-			std::ostringstream message;
-			message << "size field gives " << size << " m at (" << at.x() << ", " << at.y()
-			        << ") m; it must return a positive length [m] everywhere in the outline";
-			throw std::invalid_argument(message.str());
-		}
-		return size;
-	}
-
 	// CGAL's criterion (angle bound first, then longest edge), with the size taken from the field at each triangle's centroid.
 	class SizeFieldCriteria : public CGAL::Delaunay_mesh_size_criteria_2<Cdt> {
 		using Uniform = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
@@ -99,7 +87,8 @@ namespace {
 			CGAL::Mesh_2::Face_badness operator()(const Quality quality) const { return at(0)(quality); }
 			CGAL::Mesh_2::Face_badness operator()(FaceHandle face, Quality& quality) const
 			{
-				return at(field->wanted->longestEdgeFactor * positiveSize(*field->wanted, centroid(face)))(face, quality);
+				const Kernel::Point_2 middle = centroid(face);
+				return at(field->wanted->longestEdgeFactor * field->wanted->size(middle.x(), middle.y()))(face, quality);
 			}
 
 		private:

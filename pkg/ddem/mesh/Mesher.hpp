@@ -24,7 +24,7 @@ struct Domain {
 struct Criteria {
 	double                                longestEdgeFactor; // no edge is longer than this times the size at the triangle's centroid
 	double                                smallestAngle;     // [rad], at most guaranteedAngle()
-	std::function<double(double, double)> size;              // wanted edge length [m] at (x, y) [m]
+	std::function<double(double, double)> size;              // wanted edge length [m] at (x, y) [m], positive; what it throws ends the meshing
 	int                                   smoothing;         // number of Lloyd iterations
 	std::size_t                           largestCount;      // give up beyond so many triangles
 	std::function<void()>                 tick;              // called now and then; may throw to stop
@@ -41,7 +41,7 @@ double guaranteedAngle();
 
 /// Fill the region bounded by the outermost segments, without the holes, with triangles.
 /// Nodes on segments do not move during smoothing, and the angle bound is restored after it. Near two segments that meet at less than 60 degrees the
-/// bound may be missed (no mesh can keep it there). Throws std::invalid_argument when the count is exceeded or a size is not positive.
+/// bound may be missed (no mesh can keep it there). Throws std::invalid_argument when the count is exceeded.
 /// Sources: CGAL manual, "2D Conforming Triangulations and Meshes"; Shewchuk, Comput. Geom. 22 (2002) 21.
 Triangulation triangulate(const Domain&, const Criteria&);
 

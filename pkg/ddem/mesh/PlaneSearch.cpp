@@ -73,18 +73,12 @@ std::optional<Crossing> firstCrossing(const std::vector<Point>& points, const st
 {
 	const auto located = toKernel(points);
 	const auto segment = [&](std::size_t i) { return Kernel::Segment_2(located[std::size_t(segments[i][0])], located[std::size_t(segments[i][1])]); };
-	const auto cross   = [&](std::size_t i, std::size_t j) {
-                for (const int a : { 0, 1 }) {
-                        for (const int b : { 0, 1 }) {
-                                if (segments[i][std::size_t(a)] != segments[j][std::size_t(b)]) continue;
-                                // A common end is fine unless the segments leave it in the same direction.
-                                const auto& common = located[std::size_t(segments[i][std::size_t(a)])];
-                                const auto& p      = located[std::size_t(segments[i][std::size_t(1 - a)])];
-                                const auto& q      = located[std::size_t(segments[j][std::size_t(1 - b)])];
-                                return CGAL::collinear(common, p, q) && !CGAL::collinear_are_strictly_ordered_along_line(p, common, q);
-                        }
-                }
-                return CGAL::do_intersect(segment(i), segment(j));
+
+	const auto cross = [&](std::size_t i, std::size_t j) {
+		for (const int end : segments[j]) {
+			if (end == segments[i][0] || end == segments[i][1]) return false;
+		}
+		return CGAL::do_intersect(segment(i), segment(j));
 	};
 	const auto pair = firstPair(located, segments, cross);
 	if (!pair) return std::nullopt;

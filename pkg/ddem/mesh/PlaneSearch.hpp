@@ -11,7 +11,7 @@ namespace yade::ddem::mesh {
 /// Indices of the points in their order along a Hilbert curve; the same for the same points in every process.
 std::vector<int> hilbertOrder(const std::vector<Point>&);
 
-/// Two segments that cross, touch or overlap other than in a common end point (by index), and where.
+/// Two segments without a common point (by index) that cross, touch or overlap, and where.
 struct Crossing {
 	int   first, second; // indices of segments, first < second
 	Point at;            // [m]

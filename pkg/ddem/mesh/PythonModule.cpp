@@ -58,9 +58,11 @@ namespace {
 			domain.holes.push_back(records<int>(holes[i], "hole"));
 			checkIndices(domain.holes.back(), domain.points.size());
 		}
-		Criteria criteria { longestEdgeFactor, smallestAngle, {}, smoothing, std::size_t(limit), [] {
-			                   if (PyErr_CheckSignals() != 0) py::throw_error_already_set(); // Ctrl-C
-			           } };
+		Criteria criteria { longestEdgeFactor, smallestAngle, {}, smoothing, std::size_t(limit), {} };
+
+		criteria.tick = [] {
+			if (PyErr_CheckSignals() != 0) py::throw_error_already_set(); // Ctrl-C
+		};
 		if (PyCallable_Check(size.ptr())) criteria.size = [&size](double x, double y) { return double(py::extract<double>(size(x, y))); };
 		else
 			criteria.size = [value = double(py::extract<double>(size))](double, double) { return value; };

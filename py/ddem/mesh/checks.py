@@ -4,7 +4,7 @@ import numpy as np
 
 from .. import _mesh
 
-_FLAT = 1e-10  # a triangle whose smallest height is below this times its longest edge has no area
+_FLAT = 1e-9  # a triangle whose smallest height is below this times its longest edge has no area
 _CLOSE = 1e-9  # nodes nearer to each other, or to an edge, than this times the local edge length are in conflict
 
 

@@ -5,6 +5,7 @@ import io
 import os
 import re
 import warnings
+from urllib.parse import unquote
 from xml.etree import ElementTree
 
 import numpy as np
@@ -60,11 +61,15 @@ def write(mesh, path):
 		meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.triangles)], cell_data=numbers, field_data=names), file_format="gmsh22", binary=False)
 		return
 	arrays = {_REGION: [mesh.regions]}
-	arrays.update({f"{_REGION}:{name}": [(mesh.regions == i).astype(np.int32)] for i, name in enumerate(mesh.region_names) if name})
+	arrays.update({f"{_REGION}:{_escaped(name)}": [(mesh.regions == i).astype(np.int32)] for i, name in enumerate(mesh.region_names) if name})
 	try:
 		meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.triangles)], cell_data=arrays))
 	except (meshio.ReadError, meshio.WriteError) as error:
 		raise ValueError(f"cannot write mesh file {path!r}: {error}") from None
+
+
+def _escaped(name):
+	return name.replace("%", "%25").replace(" ", "%20")  # VTK's old format allows no spaces in names of arrays
 
 
 def _read_with_meshio(path):
@@ -147,6 +152,6 @@ def _regions(data, blocks, count):
 	regions, names = np.zeros(count, dtype=np.int32), [""]
 	for key, values in data.cell_data.items():
 		if key.startswith(_REGION + ":"):
-			names.append(key[len(_REGION) + 1:])
+			names.append(unquote(key[len(_REGION) + 1:]))
 			regions[np.concatenate([values[i] for i in blocks]).astype(int) != 0] = len(names) - 1
 	return regions, tuple(names)

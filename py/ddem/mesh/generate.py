@@ -6,7 +6,7 @@ import warnings
 import numpy as np
 
 from .. import _mesh
-from .outline import Rings, box, distance, inside, ring, signed_area
+from .outline import Rings, box, distance, inside, signed_area
 from .triangles import Mesh
 
 PATTERNS = ("crossed", "alternating", "unstructured")
@@ -28,8 +28,8 @@ def rectangle(width, height, size=None, pattern="crossed", regions=None, nx=None
 	:param pattern: "crossed": each cell cut into four triangles by both diagonals (no preferred direction);
 		"alternating": each cell cut into two, the direction of the diagonal alternating like the stripes of a union jack;
 		"unstructured": :func:`polygon`, which also takes holes=, min_angle=, smoothing=, seed= and limit=
-	:param regions: name -> polygon. In a regular mesh a triangle belongs to a region when its centroid lies in it, so the region's border follows the nearest
-		mesh lines; a warning gives the error of its area above 2.5 %. An unstructured mesh has exact borders. Where regions overlap, the later one wins.
+	:param regions: name -> polygon, as for :func:`polygon`; but in a regular mesh a triangle belongs to a region when its centroid lies in it, so the region's border
+		follows the nearest mesh lines; a warning gives the error of its area above 2.5 %. An unstructured mesh has exact borders.
 	:param nx, ny: number of cells, instead of size
 
 	The meshes of Zubelewicz (2018) are "crossed" with 10 mm cells: 0.1 m x 0.4 m gives its 1600 triangles, 0.1 m x 0.2 m its 800, and box(0.043, 0.093,
@@ -51,10 +51,8 @@ def rectangle(width, height, size=None, pattern="crossed", regions=None, nx=None
 
 	nodes, triangles = (_crossed if pattern == "crossed" else _alternating)(nx, ny)
 	mesh = Mesh(nodes * (width / nx, height / ny), triangles)
-	shapes = {name: ring(corners, f"region {name!r}") for name, corners in _named(regions).items()}
-	for name, shape in shapes.items():
-		if (shape < -1e-9 * max(width, height)).any() or (shape > np.array([width, height]) + 1e-9 * max(width, height)).any():
-			raise ValueError(f"region {name!r} reaches out of the rectangle of {width} m x {height} m; its corners are {shape.tolist()}")
+	rings = Rings.assemble(box(0, 0, width, height), [], _named(regions))
+	shapes = dict(zip(_named(regions), (rings.points[chain] for chain in rings.chains[1:])))
 	result = _with_regions(mesh, shapes)
 	for name, shape in shapes.items():
 		wanted, found = signed_area(shape), mesh.areas[inside(mesh.centroids, shape)].sum()
