@@ -58,18 +58,34 @@ namespace {
 
 	bool sameGroup(const Body& a, const Body& b) { return a.material == b.material && triangleShape(a).thickness == triangleShape(b).thickness; }
 
-	/// Rows by body id, for state to be carried over.
-	std::map<Body::id_t, std::size_t> rowsById(const std::vector<shared_ptr<Body>>& bodies)
+	/// All parameters of a material that the arrays depend on.
+	std::vector<double> fingerprint(const DeformableElastMat& material)
 	{
-		std::map<Body::id_t, std::size_t> rows;
-		for (std::size_t i = 0; i < bodies.size(); i++)
-			rows[bodies[i]->getId()] = i;
-		return rows;
+		std::vector<double> values { material.young, material.poisson, material.density, material.rotationStiffness };
+		if (const auto* concrete = dynamic_cast<const ConcreteDamageMat*>(&material)) {
+			const ddem::ConcreteParameters p = concrete->parameters();
+			static_assert(sizeof(p) % sizeof(double) == 0, "ConcreteParameters holds doubles only");
+			const auto* first = reinterpret_cast<const double*>(&p);
+			values.insert(values.end(), first, first + sizeof(p) / sizeof(double));
+			values.push_back(concrete->effects());
+		}
+		return values;
+	}
+
+	/// Starts a point from what is known of it, else from State; returns its blocked degrees of freedom.
+	unsigned startPoint(const Body& b, const CarriedState::Point* known, ddem::Points& to, std::size_t i)
+	{
+		for (std::size_t c = 0; c < 2; c++) {
+			to.position[2 * i + c] = known ? known->position[c] : b.state->pos[Eigen::Index(c)];
+			to.velocity[2 * i + c] = known ? known->velocity[c] : b.state->vel[Eigen::Index(c)];
+			to.force[2 * i + c]    = known ? known->force[c] : 0;
+		}
+		return known ? known->blocked : b.state->blockedDOFs;
 	}
 
 } // namespace
 
-DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTreatment rotation, Real vertexShare, const DeformableAssembly& previous)
+DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTreatment rotation, Real vertexShare, const CarriedState& carried)
 {
 	DeformableAssembly made;
 	made.sceneBodies = scene.bodies->size();
@@ -94,7 +110,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 	s.core.resize(nCores);
 	if (rotation == ddem::RotationTreatment::Cosserat) s.spin.resize(nCores);
 	std::map<const Material*, std::size_t> concreteOf;
-	std::set<std::array<std::int32_t, 3>>  known;
+	std::set<std::array<std::int32_t, 3>>  triples;
 	for (std::size_t i = 0; i < nCores; i++) {
 		const Body&               b        = *made.cores[i];
 		const DeformableTriangle& shape    = triangleShape(b);
@@ -125,8 +141,10 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 		}
 		std::array<std::int32_t, 3> key = rows;
 		std::sort(key.begin(), key.end());
-		if (!known.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
+		if (!triples.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
 
+		if (std::none_of(made.materials.begin(), made.materials.end(), [&](const Fingerprint& other) { return other.first == &material; }))
+			made.materials.emplace_back(&material, fingerprint(material));
 		const auto* concrete = dynamic_cast<const ConcreteDamageMat*>(&material);
 		const bool  plain    = !concrete || concrete->effects() == 0;
 		if (i == 0 || !sameGroup(*made.cores[i - 1], b)) {
@@ -159,40 +177,85 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 	for (std::size_t i = 0; i < made.nodes.size(); i++)
 		if (s.node.mass[i] == 0) reject(*made.nodes[i], "this DeformableNode belongs to no DeformableTriangle, so it has no mass; erase it");
 
-	// state: what the arrays of `previous` know, else what State says
-	const auto oldNodes = rowsById(previous.nodes), oldCores = rowsById(previous.cores);
-	const auto carry = [](const Body& b, ddem::Points& to, std::size_t i, const ddem::Points* from, std::size_t j) {
-		for (std::size_t c = 0; c < 2; c++) {
-			to.position[2 * i + c] = from ? from->position[2 * j + c] : b.state->pos[Eigen::Index(c)];
-			to.velocity[2 * i + c] = from ? from->velocity[2 * j + c] : b.state->vel[Eigen::Index(c)];
-		}
-	};
+	made.nodeBlocked.resize(made.nodes.size());
+	made.coreBlocked.resize(nCores);
 	for (std::size_t i = 0; i < made.nodes.size(); i++) {
-		const auto old = oldNodes.find(made.nodes[i]->getId());
-		carry(*made.nodes[i], s.node, i, old == oldNodes.end() ? nullptr : &previous.system->node, old == oldNodes.end() ? 0 : old->second);
+		const auto known            = carried.nodes.find(made.nodes[i]->getId());
+		made.nodeBlocked[i] = startPoint(*made.nodes[i], known == carried.nodes.end() ? nullptr : &known->second, s.node, i);
 	}
 	for (std::size_t i = 0; i < nCores; i++) {
-		const Body& b     = *made.cores[i];
-		const auto  old   = oldCores.find(b.getId());
-		const bool  known_ = old != oldCores.end();
-		carry(b, s.core, i, known_ ? &previous.system->core : nullptr, known_ ? old->second : 0);
+		const Body& b               = *made.cores[i];
+		const auto  found           = carried.cores.find(b.getId());
+		const auto* known           = found == carried.cores.end() ? nullptr : &found->second;
+		made.coreBlocked[i] = startPoint(b, known, s.core, i);
 		if (s.spin.size()) {
-			const bool spun      = known_ && previous.system->spin.size();
-			s.spin.angle[i]    = spun ? previous.system->spin.angle[old->second] : angleOf(b.state->ori);
-			s.spin.velocity[i] = spun ? previous.system->spin.velocity[old->second] : b.state->angVel[2];
+			const bool spun    = known && known->spins;
+			s.spin.angle[i]    = spun ? known->angle : angleOf(b.state->ori);
+			s.spin.velocity[i] = spun ? known->spin : b.state->angVel[2];
+			s.spin.moment[i]   = spun ? known->moment : 0;
 		}
 		const ddem::TriangleGroup& group = s.groupOf(i);
-		if (known_ && group.law == ddem::TriangleGroup::Law::Concrete)
-			if (const ddem::ConcreteState* state = previous.system->concreteStates(old->second)) std::copy(state, state + 3, &s.concreteState[s.stateIndex(group, i)]);
+		if (known && !known->concrete.empty() && group.law == ddem::TriangleGroup::Law::Concrete)
+			std::copy(known->concrete.begin(), known->concrete.end(), s.concreteState.begin() + std::ptrdiff_t(s.stateIndex(group, i)));
 	}
-	made.nodeBlocked.assign(made.nodes.size(), 0);
-	made.coreBlocked.assign(nCores, 0);
-	made.takeBlockedDegreesOfFreedom();
+	made.applyBlockedDegreesOfFreedom();
 	s.build();
+
+	ddem::TriangleSystem::Book book = s.book();
+	book.gravityWork                = carried.pendingWork[0];
+	book.externalWork               = carried.pendingWork[1];
+	book.dampingLoss                = carried.pendingWork[2];
+	const auto last                 = [](std::vector<double>& to, std::size_t i, const CarriedState::Point& from) { std::copy(from.lastVelocity.begin(), from.lastVelocity.end(), &to[2 * i]); };
+	for (std::size_t i = 0; i < made.nodes.size(); i++)
+		if (const auto known = carried.nodes.find(made.nodes[i]->getId()); known != carried.nodes.end()) last(book.nodeVelocity, i, known->second);
+	for (std::size_t i = 0; i < nCores; i++)
+		if (const auto known = carried.cores.find(made.cores[i]->getId()); known != carried.cores.end()) {
+			last(book.coreVelocity, i, known->second);
+			if (s.spin.size() && known->second.spins) book.spinVelocity[i] = known->second.lastSpin;
+		}
+	s.setBook(book);
 	return made;
 }
 
-bool DeformableAssembly::upToDate(const Scene& scene) const
+CarriedState DeformableAssembly::carry() const
+{
+	CarriedState carried;
+	if (!system) return carried;
+	const ddem::TriangleSystem&      s     = *system;
+	const ddem::TriangleSystem::Book book  = s.book();
+	carried.pendingWork                    = { book.gravityWork, book.externalWork, book.dampingLoss };
+	const auto point                       = [](CarriedState::Point& to, const ddem::Points& from, const std::vector<double>& last, unsigned blocked, std::size_t i) {
+                to.blocked = blocked;
+                for (std::size_t c = 0; c < 2; c++) {
+                        to.position[c]     = from.position[2 * i + c];
+                        to.velocity[c]     = from.velocity[2 * i + c];
+                        to.force[c]        = from.force[2 * i + c];
+                        to.lastVelocity[c] = last[2 * i + c];
+                }
+	};
+	for (std::size_t i = 0; i < nodes.size(); i++)
+		point(carried.nodes[nodes[i]->getId()], s.node, book.nodeVelocity, nodeBlocked[i], i);
+	for (std::size_t i = 0; i < cores.size(); i++) {
+		CarriedState::Core& core = carried.cores[cores[i]->getId()];
+		point(core, s.core, book.coreVelocity, coreBlocked[i], i);
+		core.spins = s.spin.size() > 0;
+		if (core.spins) {
+			core.angle    = s.spin.angle[i];
+			core.spin     = s.spin.velocity[i];
+			core.moment   = s.spin.moment[i];
+			core.lastSpin = book.spinVelocity[i];
+		}
+		if (const ddem::ConcreteState* state = s.concreteStates(i)) core.concrete.assign(state, state + 3);
+	}
+	return carried;
+}
+
+bool DeformableAssembly::materialsChanged() const
+{
+	return std::any_of(materials.begin(), materials.end(), [](const Fingerprint& known) { return fingerprint(*known.first) != known.second; });
+}
+
+bool DeformableAssembly::upToDate(const Scene& scene)
 {
 	if (!system) return false;
 	if (scene.bodies->size() == sceneBodies) return true;
@@ -202,7 +265,9 @@ bool DeformableAssembly::upToDate(const Scene& scene) const
 		triangles += dynamic_cast<const DeformableTriangle*>(b->shape.get()) != nullptr;
 		points += dynamic_cast<const DeformableNode*>(b->shape.get()) != nullptr;
 	}
-	return triangles == cores.size() && points == nodes.size();
+	if (triangles != cores.size() || points != nodes.size()) return false;
+	sceneBodies = scene.bodies->size();
+	return true;
 }
 
 void DeformableAssembly::adopt(int groupMask) const
@@ -221,20 +286,19 @@ void DeformableAssembly::adopt(int groupMask) const
 	}
 }
 
-void DeformableAssembly::takeBlockedDegreesOfFreedom()
+void DeformableAssembly::applyBlockedDegreesOfFreedom()
 {
 	const auto inverse = [](double mass, bool blocked) { return blocked ? 0 : 1 / mass; };
-	const auto take    = [&](const std::vector<shared_ptr<Body>>& bodies, ddem::Points& points, std::vector<unsigned>& known, std::vector<std::size_t>& constrained, unsigned relevant) {
+	const auto apply   = [&](ddem::Points& points, const std::vector<unsigned>& blocked, std::vector<std::size_t>& constrained, unsigned relevant) {
                 constrained.clear();
-                for (std::size_t i = 0; i < bodies.size(); i++) {
-                        known[i]                      = bodies[i]->state->blockedDOFs;
-                        points.inverseMass[2 * i]     = inverse(points.mass[i], known[i] & State::DOF_X);
-                        points.inverseMass[2 * i + 1] = inverse(points.mass[i], known[i] & State::DOF_Y);
-                        if (known[i] & relevant) constrained.push_back(i);
+                for (std::size_t i = 0; i < blocked.size(); i++) {
+                        points.inverseMass[2 * i]     = inverse(points.mass[i], blocked[i] & State::DOF_X);
+                        points.inverseMass[2 * i + 1] = inverse(points.mass[i], blocked[i] & State::DOF_Y);
+                        if (blocked[i] & relevant) constrained.push_back(i);
                 }
 	};
-	take(nodes, system->node, nodeBlocked, constrainedNodes, planeDofs);
-	take(cores, system->core, coreBlocked, constrainedCores, coreDofs);
+	apply(system->node, nodeBlocked, constrainedNodes, planeDofs);
+	apply(system->core, coreBlocked, constrainedCores, coreDofs);
 	for (std::size_t i = 0; i < system->spin.size(); i++)
 		system->spin.inverseInertia[i] = inverse(system->spin.inertia[i], coreBlocked[i] & State::DOF_RZ);
 	system->collectConstraints();
@@ -296,27 +360,32 @@ void DeformableAssembly::exposeConstrained() const
 	}
 }
 
-void DeformableAssembly::importChanges()
+void DeformableAssembly::importChanges(const Scene& scene)
 {
-	bool blockedChanged = false;
-	for (std::size_t i = 0; i < nodes.size(); i++) {
-		importPoint(*nodes[i], system->node, i);
-		blockedChanged |= nodes[i]->state->blockedDOFs != nodeBlocked[i];
-	}
+	bool       blockedChanged = false;
+	const auto take           = [&](const shared_ptr<Body>& b, ddem::Points& points, unsigned& blocked, std::size_t i) {
+                if ((*scene.bodies)[std::size_t(b->getId())] != b)
+                        throw std::invalid_argument(
+                                describe(*b, b->state->refPos) + " was erased from the scene: deformable nodes and triangles cannot be erased during a simulation; "
+                                "block their motion, or build the scene without them");
+                importPoint(*b, points, i);
+                blockedChanged |= b->state->blockedDOFs != blocked;
+                blocked = b->state->blockedDOFs;
+	};
+	for (std::size_t i = 0; i < nodes.size(); i++)
+		take(nodes[i], system->node, nodeBlocked[i], i);
 	for (std::size_t i = 0; i < cores.size(); i++) {
-		const Body& b = *cores[i];
-		importPoint(b, system->core, i);
-		blockedChanged |= b.state->blockedDOFs != coreBlocked[i];
-		if (system->spin.size()) {
-			if (b.state->ori.coeffs() != turnBy(system->spin.angle[i]).coeffs()) {
-				requireFinite(b);
-				system->spin.angle[i] = angleOf(b.state->ori);
-			}
-			system->spin.velocity[i] = b.state->angVel[2];
-			if (!std::isfinite(system->spin.velocity[i])) requireFinite(b);
+		take(cores[i], system->core, coreBlocked[i], i);
+		if (!system->spin.size()) continue;
+		const State& state = *cores[i]->state;
+		if (state.ori.coeffs() != turnBy(system->spin.angle[i]).coeffs()) {
+			requireFinite(*cores[i]);
+			system->spin.angle[i] = angleOf(state.ori);
 		}
+		system->spin.velocity[i] = state.angVel[2];
+		if (!std::isfinite(system->spin.velocity[i])) requireFinite(*cores[i]);
 	}
-	if (blockedChanged) takeBlockedDegreesOfFreedom();
+	if (blockedChanged) applyBlockedDegreesOfFreedom();
 }
 
 void DeformableAssembly::importPrescribed()

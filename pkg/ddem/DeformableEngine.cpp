@@ -1,9 +1,12 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/DeformableEngine.hpp>
 
+#include <pkg/ddem/DeformableNode.hpp>
+
 #include <boost/python/numpy.hpp>
 
-#include <cstring>
+#include <algorithm>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -25,13 +28,21 @@ namespace {
 		return names.count(engine.getClassName()) > 0;
 	}
 
-	/// Whether a periodic engine may act at the given step and times; early by `slack` of real time rather than late.
+	/// Engines that may add forces, or move bodies that they name and whose motion is prescribed, but look at no free deformable body.
+	bool neverLooks(const Engine& engine)
+	{
+		static const std::set<std::string> names { "ForceEngine", "TorqueEngine" };
+		return isQuiet(engine) || names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine);
+	}
+
+	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides; early by `slack` of real time rather than late.
 	bool isDue(const PeriodicEngine& e, long iter, Real time, Real slack)
 	{
-		if (e.nDo >= 0 && e.nDone >= e.nDo) return false;
-		if (e.nDone == 0) return e.initRun || (e.firstIterRun > 0 && e.firstIterRun == iter);
-		return (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod) || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
+		if (e.firstIterRun > 0 && e.nDone == 0) return e.firstIterRun == iter;
+		const long done = iter < e.iterLast ? 0 : e.nDone;
+		const bool due  = (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod) || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
 		        || (e.iterPeriod > 0 && iter - e.iterLast >= e.iterPeriod);
+		return ((e.nDo < 0 || done < e.nDo) && due) || (done == 0 && e.initRun);
 	}
 
 	std::string placeOf(const Body& b)
@@ -72,22 +83,92 @@ void DeformableEngine::postLoad(DeformableEngine&)
 	stale = true; // assembled anew at the next step; the state is kept
 }
 
-void DeformableEngine::assembleIfNeeded()
+CarriedState DeformableEngine::stateToCarry(const Scene& of) const
 {
-	if (!scene) scene = Omega::instance().getScene().get();
-	if (!stale && assembly.upToDate(*scene)) return;
-	DeformableAssembly made = DeformableAssembly::fromScene(*scene, rotationTreatment(), vertexShare, assembly);
-	assembly                = std::move(made);
-	stale                   = false;
-	restoreSaved();
-	assembly.adopt(groupMask);
-	checkedEngines.clear();
+	if (assembly.system) return assembly.carry();
+	if (savedVersion != 0) {
+		if (savedVersion != stateVersion)
+			throw std::runtime_error(
+			        "the scene was saved with version " + std::to_string(savedVersion) + " of the state of deformable triangles; this plugin reads version "
+			        + std::to_string(stateVersion) + ": load it with the plugin that saved it");
+		return CarriedState::fromNumbers(savedState);
+	}
+	// a new engine in a scene that another one has run: what only arrays hold is still with the shapes; positions are in State
+	CarriedState carried;
+	for (const auto& b : *of.bodies) {
+		const auto* shape = b ? dynamic_cast<const DeformableTriangle*>(b->shape.get()) : nullptr;
+		if (!shape || !shape->system) continue;
+		const ddem::TriangleSystem& s    = *shape->system;
+		CarriedState::Core&         core = carried.cores[b->getId()];
+		core.blocked                     = b->state->blockedDOFs;
+		for (std::size_t c = 0; c < 2; c++) {
+			core.position[c] = b->state->pos[Eigen::Index(c)];
+			core.velocity[c] = core.lastVelocity[c] = b->state->vel[Eigen::Index(c)];
+		}
+		core.spins = s.spin.size() > 0;
+		if (core.spins) {
+			core.angle = s.spin.angle[shape->slot];
+			core.spin = core.lastSpin = b->state->angVel[2];
+		}
+		if (const ddem::ConcreteState* state = s.concreteStates(shape->slot)) core.concrete.assign(state, state + 3);
+	}
+	return carried;
 }
 
-const shared_ptr<ddem::TriangleSystem>& DeformableEngine::system()
+void DeformableEngine::assembleIfNeeded(Scene& of)
 {
-	assembleIfNeeded();
-	return assembly.system;
+	scene = &of;
+	if (exposed && assembly.system && assembly.materialsChanged()) stale = true;
+	if (!stale && assembly.upToDate(of)) return;
+	assembly = DeformableAssembly::fromScene(of, rotationTreatment(), vertexShare, stateToCarry(of));
+	assembly.adopt(groupMask);
+	std::vector<Real>().swap(savedState);
+	savedVersion = 0;
+	stale        = false;
+	checkedStep  = 0;
+	checkedEngines.clear();
+	maskIntegrators(of);
+	for (const auto& b : assembly.cores)
+		if (rotation == "cosserat" && static_cast<const DeformableElastMat&>(*b->material).rotationStiffness < 1e-3) {
+			LOG_WARN("rotationStiffness of material '" << b->material->label << "' is below 1e-3: cores are tied to their vertices by it, and a free core lets go of tension; use rotation='corotational' for a classic continuum");
+			break;
+		}
+}
+
+DeformableAssembly& DeformableEngine::current()
+{
+	Scene&     now  = *Omega::instance().getScene();
+	const bool mine = std::any_of(now.engines.begin(), now.engines.end(), [this](const shared_ptr<Engine>& e) { return e.get() == this; });
+	if (!mine && assembly.system) return assembly; // of a scene that is gone, or an engine taken out of it
+	if (!mine) throw std::runtime_error("this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
+	assembleIfNeeded(now);
+	if (exposed && !Omega::instance().isRunning()) assembly.importChanges(now);
+	return assembly;
+}
+
+void DeformableEngine::maskIntegrators(const Scene& of) const
+{
+	for (const auto& e : of.engines)
+		if (auto* newton = dynamic_cast<NewtonIntegrator*>(e.get())) {
+			const int mask = (newton->mask > 0 ? newton->mask : std::numeric_limits<int>::max()) & ~groupMask;
+			if (mask == 0)
+				throw std::runtime_error("NewtonIntegrator.mask has only the bit of DeformableEngine.groupMask, so it would move no body or move deformable ones twice; remove its mask");
+			newton->mask = mask;
+		}
+}
+
+void DeformableEngine::checkDrivenNodes() const
+{
+	for (const auto& e : scene->engines) {
+		const auto* drive = dynamic_cast<const KinematicEngine*>(e.get());
+		if (!drive || drive->dead) continue;
+		for (const auto id : drive->ids) {
+			const shared_ptr<Body> b = Body::byId(id, scene);
+			if (b && dynamic_cast<const DeformableNode*>(b->shape.get()) && !(b->state->blockedDOFs & (State::DOF_X | State::DOF_Y)))
+				throw std::runtime_error(
+				        drive->getClassName() + " drives deformable node " + placeOf(*b) + ", whose degrees of freedom are free; block those that are driven: block.hold(ids, 'y')");
+		}
+	}
 }
 
 void DeformableEngine::checkEngines()
@@ -104,21 +185,24 @@ void DeformableEngine::checkEngines()
 		if (name == "ForceResetter") resetter = long(i);
 		if (name == "InteractionLoop") interactions = long(i);
 	}
+	if (resetter < 0) throw std::runtime_error("O.engines has no ForceResetter: forces and energies would pile up from step to step; put ForceResetter() first");
 	if (resetter > mine)
 		throw std::runtime_error("wrong order in O.engines: ForceResetter comes after DeformableEngine and would wipe forces before they are used; put it first");
 	if (interactions > mine)
 		throw std::runtime_error("wrong order in O.engines: InteractionLoop comes after DeformableEngine, so contact forces would be used one step late; put DeformableEngine after it");
 	collectForces = false;
+	integrators.clear();
 	for (std::size_t i = 0; i < now.size(); i++) {
-		const bool between = long(i) > resetter && (long(i) < mine || resetter < 0);
-		if (between && !now[i]->dead && !isQuiet(*now[i])) collectForces = true;
+		const bool between = long(i) > resetter && long(i) < mine;
+		if (between && !isQuiet(*now[i]) && !dynamic_cast<const KinematicEngine*>(now[i])) collectForces = true;
 		if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(now[i])) {
-			const int mask = (newton->mask > 0 ? newton->mask : std::numeric_limits<int>::max()) & ~groupMask;
-			if (mask == 0)
-				throw std::runtime_error("NewtonIntegrator.mask has only the bit of DeformableEngine.groupMask, so it would move no body or move deformable ones twice; remove its mask");
-			const_cast<NewtonIntegrator*>(newton)->mask = mask;
+			integrators.push_back(newton);
+			if (long(i) < mine && (newton->mask <= 0 || (newton->mask & groupMask)))
+				throw std::runtime_error("wrong order in O.engines: NewtonIntegrator comes before DeformableEngine and has moved deformable bodies in this step; put it after");
 		}
 	}
+	maskIntegrators(*scene);
+	checkDrivenNodes();
 	checkedEngines = now;
 }
 
@@ -134,9 +218,14 @@ void DeformableEngine::checkTimeStep()
 
 void DeformableEngine::action()
 {
-	assembleIfNeeded();
+	assembleIfNeeded(*scene);
 	checkEngines();
-	if (exposed) assembly.importChanges();
+	if (exposed) {
+		assembly.importChanges(*scene);
+		checkDrivenNodes();
+	}
+	for (const auto* newton : integrators)
+		if (newton->mask <= 0 || (newton->mask & groupMask)) maskIntegrators(*scene);
 	assembly.importPrescribed();
 	if (scene->dt != checkedStep || scene->iter % boundInterval == 0) {
 		checkTimeStep();
@@ -180,7 +269,7 @@ bool DeformableEngine::somebodyMayLook() const
 			before = false;
 			continue;
 		}
-		if (e->dead || isQuiet(*e) || dynamic_cast<const PartialEngine*>(e.get())) continue; // a PartialEngine acts on the bodies it names, whose motion is prescribed
+		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
 		if (!periodic || isDue(*periodic, before ? next : scene->iter, before ? then : scene->time, 0.01)) return true;
 	}
@@ -213,85 +302,35 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 
 // ---- saving --------------------------------------------------------------------------------------------------------------------------------------------
 
-namespace {
-
-	std::vector<Real> joined(std::initializer_list<const std::vector<double>*> parts)
-	{
-		std::vector<Real> all;
-		for (const auto* part : parts)
-			all.insert(all.end(), part->begin(), part->end());
-		return all;
-	}
-
-	void split(const std::vector<Real>& all, std::initializer_list<std::vector<double>*> parts, const char* what)
-	{
-		std::size_t size = 0;
-		for (const auto* part : parts)
-			size += part->size();
-		if (all.size() != size)
-			throw std::runtime_error(
-			        std::string("the saved state of deformable ") + what + " has " + std::to_string(all.size()) + " numbers where " + std::to_string(size)
-			        + " are needed: the file does not fit its bodies (or comes from another version of the plugin)");
-		auto from = all.begin();
-		for (auto* part : parts) {
-			std::copy(from, from + std::ptrdiff_t(part->size()), part->begin());
-			from += std::ptrdiff_t(part->size());
-		}
-	}
-
-	constexpr std::size_t concreteDoubles = sizeof(ddem::ConcreteState) / sizeof(double);
-
-} // namespace
-
 void DeformableEngine::preSave(DeformableEngine&)
 {
-	if (!assembly.system) return;
-	const ddem::TriangleSystem& s = *assembly.system;
-	savedVersion                  = stateVersion;
-	savedNodes                    = joined({ &s.node.position, &s.node.velocity, &s.node.force });
-	savedCores                    = joined({ &s.core.position, &s.core.velocity, &s.core.force, &s.spin.angle, &s.spin.velocity, &s.spin.moment });
-	savedConcrete.resize(concreteDoubles * s.concreteState.size());
-	if (!savedConcrete.empty()) std::memcpy(savedConcrete.data(), s.concreteState.data(), savedConcrete.size() * sizeof(double));
-	savedBook = s.bookState();
+	if (!assembly.system) return; // nothing yet, or loaded and not run: then savedState still holds the state
+	savedVersion = stateVersion;
+	savedState   = assembly.carry().numbers();
 }
 
 void DeformableEngine::postSave(DeformableEngine&)
 {
-	for (auto* saved : { &savedNodes, &savedCores, &savedConcrete, &savedBook })
-		std::vector<Real>().swap(*saved);
+	if (!assembly.system) return;
 	savedVersion = 0;
-}
-
-void DeformableEngine::restoreSaved()
-{
-	if (savedVersion == 0) return;
-	if (savedVersion != stateVersion)
-		throw std::runtime_error(
-		        "the scene was saved with version " + std::to_string(savedVersion) + " of the state of deformable triangles; this plugin reads version " + std::to_string(stateVersion)
-		        + ": load it with the plugin that saved it");
-	ddem::TriangleSystem& s = *assembly.system;
-	split(savedNodes, { &s.node.position, &s.node.velocity, &s.node.force }, "nodes");
-	split(savedCores, { &s.core.position, &s.core.velocity, &s.core.force, &s.spin.angle, &s.spin.velocity, &s.spin.moment }, "triangles");
-	std::vector<double> concrete(concreteDoubles * s.concreteState.size());
-	split(savedConcrete, { &concrete }, "concrete");
-	if (!concrete.empty()) std::memcpy(static_cast<void*>(s.concreteState.data()), concrete.data(), concrete.size() * sizeof(double));
-	s.restoreBook(savedBook);
-	postSave(*this);
+	std::vector<Real>().swap(savedState);
 }
 
 // ---- what Python sees ----------------------------------------------------------------------------------------------------------------------------------
 
-Real DeformableEngine::criticalTimeStep()
+Real DeformableEngine::criticalTimeStep() { return current().timeStep().first; }
+
+Real DeformableEngine::timeStepOfScene() const
 {
-	assembleIfNeeded();
-	return assembly.timeStep().first;
+	Scene& now = *Omega::instance().getScene();
+	return DeformableAssembly::fromScene(now, rotationTreatment(), vertexShare, CarriedState()).timeStep().first;
 }
 
 boost::python::tuple DeformableEngine::rulingTriangle()
 {
-	assembleIfNeeded();
-	const auto [step, triangle] = assembly.timeStep();
-	return boost::python::make_tuple(assembly.cores[triangle]->getId(), step);
+	const DeformableAssembly& a = current();
+	const auto [step, triangle] = a.timeStep();
+	return boost::python::make_tuple(a.cores[triangle]->getId(), step);
 }
 
 namespace {
@@ -375,7 +414,7 @@ namespace {
 boost::python::object DeformableEngine::array(const std::string& name)
 {
 	startNumpy();
-	const auto& s = system();
+	const auto& s = current().system;
 	if (name == "nodePosition") return view(s, s->node.position, 2);
 	if (name == "nodeVelocity") return view(s, s->node.velocity, 2);
 	if (name == "nodeForce") return view(s, s->node.force, 2);
@@ -393,10 +432,11 @@ boost::python::object DeformableEngine::array(const std::string& name)
 boost::python::object DeformableEngine::values(const std::string& name)
 {
 	startNumpy();
-	const ddem::TriangleSystem& s = *system();
+	const DeformableAssembly&   parts = current();
+	const ddem::TriangleSystem& s = *parts.system;
 	const std::size_t           n = s.triangles();
-	if (name == "nodeIds") return bodyIds(assembly.nodes);
-	if (name == "triangleIds") return bodyIds(assembly.cores);
+	if (name == "nodeIds") return bodyIds(parts.nodes);
+	if (name == "triangleIds") return bodyIds(parts.cores);
 	if (name == "vertices")
 		return filled<int>({ n, 3 }, 3, [&](std::size_t i, int* to) {
 			for (std::size_t e = 0; e < 3; e++)

@@ -17,12 +17,11 @@ public:
 	/// The one engine of this class in the current scene. \throws std::runtime_error if there is none or more than one.
 	static DeformableEngine& ofCurrentScene();
 	/// Builds the arrays from the scene's bodies unless they are up to date.
-	void assembleIfNeeded();
-	/// The arrays; assembled if need be.
-	const shared_ptr<ddem::TriangleSystem>& system();
-	const DeformableAssembly&               parts() const { return assembly; }
-
+	void assembleIfNeeded(Scene& of);
+	/// What Python reads goes through here: the arrays, with what was changed in State taken up.
+	DeformableAssembly& current();
 	Real                  criticalTimeStep();
+	Real                  timeStepOfScene() const;
 	boost::python::tuple  rulingTriangle();
 	boost::python::object array(const std::string& name);
 	boost::python::object values(const std::string& name);
@@ -39,20 +38,18 @@ public:
 		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind).\n\n"
 		"Place it after the engines that add forces and after :yref:`ForceResetter`. Results are the same, bit by bit, for any number of threads.\n\n"
 		"Errors: a time step above :yref:`criticalTimeStep<DeformableEngine.criticalTimeStep>`, engines in the wrong order, unusable triangles and a state that is not finite stop the run with the body, its place and the way out.\n\n"
-		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not).",
+		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old.",
 		((std::string,rotation,"cosserat",Attr::triggerPostLoad,"How elements follow rotation: 'cosserat' (cores rotate, tied by :yref:`rotationStiffness<DeformableElastMat.rotationStiffness>`), 'corotational' (frame from the polar decomposition of the vertices' deformation, no rotational inertia) or 'none' (small rotations, cheapest)."))
 		((Real,vertexShare,1./6,Attr::triggerPostLoad,"Share :math:`\\alpha` [-] of a triangle's mass that sits in its vertices, a third of it in each; below 1/4 with 'cosserat'. Governs the stable time step."))
 		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored."))
 		((Real,damping,0,,"Coefficient [-] of Cundall's local non-viscous damping, as :yref:`NewtonIntegrator.damping`."))
-		((int,groupMask,1<<20,,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`."))
-		((vector<Real>,savedNodes,,Attr::hidden,"State of the nodes in a saved scene"))
-		((vector<Real>,savedCores,,Attr::hidden,"State of the cores in a saved scene"))
-		((vector<Real>,savedConcrete,,Attr::hidden,"State of concrete sub-elements in a saved scene"))
-		((vector<Real>,savedBook,,Attr::hidden,"Pending works of the energy book in a saved scene"))
+		((int,groupMask,1<<20,Attr::triggerPostLoad,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`."))
+		((vector<Real>,savedState,,Attr::hidden,"State of all deformable bodies in a saved scene"))
 		((int,savedVersion,0,Attr::hidden,"Version of the saved state"))
 		((bool,exposed,true,Attr::hidden,"Whether State agreed with the arrays when saved")),
 		/*ctor*/,
 		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on the time step [s]: 2/ω of the stiffest element, at the current state of the equation of state. Works before the first step.")
+		.def("timeStepOfScene",&DeformableEngine::timeStepOfScene,"The same bound [s] for the triangles of the scene, from this engine's settings, when the engine is not (yet) in O.engines.")
 		.def("rulingTriangle",&DeformableEngine::rulingTriangle,"The triangle that rules the time step, as (body id, its own bound [s]).")
 		.def("array",&DeformableEngine::array,(boost::python::arg("name")),"Numpy view, without a copy, of a state array of the whole sample; rows in the order of :yref:`DeformableEngine.values` 'nodeIds' and 'triangleIds'.\n\n"
 			"nodePosition, nodeVelocity, nodeForce (nodes, 2) [m, m/s, N]; nodeMass (nodes,) [kg]; corePosition, coreVelocity, coreForce (triangles, 2); coreMass (triangles,) [kg]; "
@@ -67,6 +64,7 @@ public:
 private:
 	DeformableAssembly                    assembly;
 	std::vector<const Engine*>            checkedEngines;
+	std::vector<const NewtonIntegrator*>  integrators;
 	bool                                  collectForces = false;
 	bool                                  stale         = true; ///< settings changed since the arrays were assembled
 	Real                                  checkedStep   = 0;    ///< time step that was last found stable [s]
@@ -77,7 +75,9 @@ private:
 	void                    checkEngines();
 	void                    checkTimeStep();
 	bool                    somebodyMayLook() const;
-	void                    restoreSaved();
+	CarriedState            stateToCarry(const Scene&) const;
+	void                    maskIntegrators(const Scene&) const;
+	void                    checkDrivenNodes() const;
 	void                    bookEnergy(const ddem::StepEnergy&);
 	[[noreturn]] void       stopAtNotFinite();
 };

@@ -10,10 +10,9 @@ DDEM_PLUGIN((DeformableNode)(DeformableTriangle))
 
 const ddem::TriangleSystem& DeformableTriangle::state() const
 {
-	if (system.expired()) DeformableEngine::ofCurrentScene().assembleIfNeeded();
-	const auto current = system.lock();
-	if (!current) throw std::runtime_error("this DeformableTriangle is not in the scene (O.bodies): it has no state yet");
-	return *current; // owned by the engine, which outlives this call
+	DeformableEngine::ofCurrentScene().current(); // assembles, and takes up what was changed in State
+	if (!system) throw std::runtime_error("this DeformableTriangle is not in the scene (O.bodies): it has no state yet");
+	return *system;
 }
 
 boost::python::list DeformableTriangle::globalTensors(const std::array<ddem::PlaneTensor, 3>& tensors) const

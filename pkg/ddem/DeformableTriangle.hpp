@@ -5,7 +5,6 @@
 #include <pkg/ddem/YadeInclude.hpp>
 #include <pkg/ddem/kernel/TriangleSystem.hpp>
 
-#include <boost/weak_ptr.hpp>
 
 namespace yade {
 
@@ -14,7 +13,7 @@ public:
 	virtual ~DeformableTriangle() = default;
 
 	/// Where the engine keeps this triangle's state; empty until it has assembled the scene.
-	boost::weak_ptr<ddem::TriangleSystem> system;
+	shared_ptr<ddem::TriangleSystem> system;
 	std::size_t                         slot = 0;
 
 	boost::python::list stress() const;

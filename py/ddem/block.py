@@ -53,7 +53,8 @@ def time_step(safety=0.8):
 	"""
 	if not 0 < safety <= 1:
 		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
-	return safety * _engine(or_temporary=True).criticalTimeStep()
+	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
+	return safety * (_engine().criticalTimeStep() if engines else DeformableEngine().timeStepOfScene())
 
 
 class Block:
@@ -190,12 +191,10 @@ def _rows(all_ids, ids):
 	return rows
 
 
-def _engine(or_temporary=False):
+def _engine():
 	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
 	if len(engines) == 1:
 		return engines[0]
-	if not engines and or_temporary:
-		return DeformableEngine()
 	raise RuntimeError(f"O.engines has {len(engines)} DeformableEngine where one is needed: it keeps and moves the deformable triangles")
 
 

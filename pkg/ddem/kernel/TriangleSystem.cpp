@@ -184,14 +184,14 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 	arrays.dt             = settings.dt;
 
 	struct GroupLoop {
-		ElementLoop    loop;
-		ConcreteUpdate update;
+		ElementLoop         loop;
+		ConcreteBlockUpdate update;
 	};
 	std::vector<GroupLoop> loops(group.size());
 	for (std::size_t g = 0; g < group.size(); g++) {
 		loops[g].loop = selectElementLoop(group[g].law, rotation, settings.energy);
 		if (group[g].law == TriangleGroup::Law::Concrete)
-			loops[g].update = concreteUpdate(concrete[group[g].concrete].effects | (settings.energy ? unsigned(ConcreteEffects::Energy) : 0));
+			loops[g].update = concreteBlockUpdate(concrete[group[g].concrete].effects | (settings.energy ? unsigned(ConcreteEffects::Energy) : 0));
 	}
 
 	std::vector<MotionSums> sums(chunk.size() + nodeChunks);
@@ -253,26 +253,31 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 	return energy;
 }
 
-std::vector<double> TriangleSystem::bookState() const
+TriangleSystem::Book TriangleSystem::book() const
 {
-	std::vector<double> saved { pending.gravityWork, pending.externalWork, pending.dampingLoss };
-	for (const auto* list : { &nodeConstraint, &coreConstraint, &spinConstraint })
-		for (const auto& c : *list)
-			saved.push_back(c.velocity);
+	Book saved { pending.gravityWork, pending.externalWork, pending.dampingLoss, node.velocity, core.velocity, spin.velocity };
+	for (const auto& c : nodeConstraint)
+		saved.nodeVelocity[c.index] = c.velocity;
+	for (const auto& c : coreConstraint)
+		saved.coreVelocity[c.index] = c.velocity;
+	for (const auto& c : spinConstraint)
+		saved.spinVelocity[c.index] = c.velocity;
 	return saved;
 }
 
-void TriangleSystem::restoreBook(const std::vector<double>& saved)
+void TriangleSystem::setBook(const Book& saved)
 {
-	if (saved.size() != 3 + nodeConstraint.size() + coreConstraint.size() + spinConstraint.size())
-		throw std::invalid_argument("the saved energy book does not fit the blocked degrees of freedom of the scene");
-	pending.gravityWork  = saved[0];
-	pending.externalWork = saved[1];
-	pending.dampingLoss  = saved[2];
-	auto from            = saved.begin() + 3;
-	for (auto* list : { &nodeConstraint, &coreConstraint, &spinConstraint })
-		for (auto& c : *list)
-			c.velocity = *from++;
+	if (saved.nodeVelocity.size() != node.velocity.size() || saved.coreVelocity.size() != core.velocity.size() || saved.spinVelocity.size() != spin.velocity.size())
+		throw std::logic_error("TriangleSystem: the energy book belongs to another system");
+	pending.gravityWork  = saved.gravityWork;
+	pending.externalWork = saved.externalWork;
+	pending.dampingLoss  = saved.dampingLoss;
+	for (auto& c : nodeConstraint)
+		c.velocity = saved.nodeVelocity[c.index];
+	for (auto& c : coreConstraint)
+		c.velocity = saved.coreVelocity[c.index];
+	for (auto& c : spinConstraint)
+		c.velocity = saved.spinVelocity[c.index];
 }
 
 TriangleSystem::Place TriangleSystem::firstNotFinite() const

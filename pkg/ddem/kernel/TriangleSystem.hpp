@@ -125,9 +125,15 @@ public:
 	/** One explicit step. \throws std::domain_error if a velocity is not finite (see firstNotFinite). */
 	StepEnergy step(const StepSettings& settings);
 
-	/// What the energy book needs to go on after a restart, and its inverse. \throws std::invalid_argument if the size does not fit.
-	std::vector<double> bookState() const;
-	void                restoreBook(const std::vector<double>& saved);
+	/// What the energy book needs to go on after a restart: works of the half step after the last positions, and for every degree of freedom the velocity of the
+	/// last step, which differs from the present one where it is prescribed.
+	struct Book {
+		double              gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< [J]
+		std::vector<double> nodeVelocity, coreVelocity, spinVelocity;           ///< [m/s, rad/s], as Points::velocity and Spins::velocity
+	};
+	Book book() const;
+	/// \throws std::logic_error if the sizes are not those of this system.
+	void setBook(const Book& saved);
 
 	/// The first node or core whose state is not finite.
 	struct Place {
