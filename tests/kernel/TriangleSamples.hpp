@@ -157,6 +157,19 @@ inline TriangleSystem makeSystem(const Mesh& mesh, const Material& material, Rot
 	return system;
 }
 
+/// Turns an elastic system into one of undamaged concrete with the given mask of ConcreteEffects.
+inline void makeConcrete(TriangleSystem& system, const ConcreteParameters& parameters, unsigned effects)
+{
+	system.concrete = { ConcreteGroupLaw { PreparedConcrete(parameters), effects } };
+	system.concreteState.assign(3 * system.triangles(), ConcreteState {});
+	system.fractureEnergy.assign(system.triangles(), parameters.fractureEnergy);
+	for (TriangleGroup& g : system.group) {
+		g.law        = TriangleGroup::Law::Concrete;
+		g.firstState = 3 * g.begin;
+	}
+	system.build();
+}
+
 /// Largest step [s] that the bound over all elements allows.
 inline double criticalStep(const Mesh& mesh, const Material& material, RotationTreatment rotation)
 {

@@ -381,4 +381,56 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 	}
 }
 
+TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow, rate, damage, equation of state and energies
+{
+	const Mesh     mesh   = rectangle(10, 15, 0.1, 0.15, 0.25, 14); // 300 triangles
+	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
+	makeConcrete(system, ConcreteParameters(), ConcreteEffects::All & ~unsigned(ConcreteEffects::Energy)); // the step adds Energy
+	const TriangleGroup all = system.group[0];
+	system.group[0].end     = 7; // an odd start of the second group
+	system.group.push_back(all);
+	system.group[1].begin      = 7;
+	system.group[1].firstState = 21;
+	Random random(56);
+	for (double& energy : system.fractureEnergy)
+		energy *= random.uniform(0.2, 2);
+	agitate(system, 20, 1000, 57);
+	system.build();
+	const StepSettings   settings = stepOf(0.4 * criticalStep(mesh, Material(), GetParam()), true);
+	const ConcreteUpdate one      = concreteUpdate(ConcreteEffects::All);
+	const double         volume   = 0.1 * 0.15;
+	double               plastic = 0, damage = 0;
+	for (int step = 0; step < 100; step++) {
+		const TriangleSystem before = system;
+		const StepEnergy     e      = system.step(settings);
+		double               stored = 0;
+		plastic = damage = 0;
+		for (std::size_t i = 0; i < system.triangles(); i++) {
+			const auto strain = before.strain(i);
+			for (std::size_t k = 0; k < 3; k++) {
+				ConcreteState        wanted = before.concreteState[3 * i + k];
+				const ConcreteState& got    = system.concreteState[3 * i + k];
+				one(system.concrete[0].parameters, system.fractureEnergy[i], strain[k], settings.dt, wanted);
+				const auto close = [&](const PlaneTensor& a, const PlaneTensor& b, double unit) {
+					return std::max({ std::abs(a.xx - b.xx), std::abs(a.yy - b.yy), std::abs(a.zz - b.zz), std::abs(a.xy - b.xy) })
+					        < 1e-7 * unit;
+				};
+				ASSERT_TRUE(close(got.stress, wanted.stress, 1e7)) << "step " << step << ", triangle " << i << ", sub-element " << k;
+				ASSERT_TRUE(close(got.plasticStrain, wanted.plasticStrain, 1e-3))
+				        << "step " << step << ", triangle " << i << ", sub-element " << k;
+				ASSERT_TRUE(close(got.damage, wanted.damage, 1)) << "step " << step << ", triangle " << i << ", sub-element " << k;
+				const double share = system.reference(i).area() / 3;
+				stored += share * storedEnergy(got);
+				plastic += share * got.plasticDissipation;
+				damage += share * got.damageDissipation;
+			}
+		}
+		EXPECT_NEAR(e.elastic, stored, 1e-12 * stored + 1e-12);
+		EXPECT_NEAR(e.plastic, plastic, 1e-12 * plastic + 1e-12);
+		EXPECT_NEAR(e.damage, damage, 1e-12 * damage + 1e-12);
+	}
+	EXPECT_GT(plastic / volume, 1); // [J/m³]: all of it has been at work
+	EXPECT_GT(damage / volume, 1);
+}
+
 } // namespace

@@ -1,35 +1,49 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/kernel/ElementLoopBodies.hpp>
 
+#include <algorithm>
+#include <array>
+
 namespace yade::ddem {
 
 namespace {
 
 	struct Baseline;
 
+	/// Concrete elements, some at a time: their strains, one update of all their sub-elements in SIMD lanes, their forces.
 	template <class Frame, bool energy>
 	void concreteLoop(const ElementArrays& a, const TriangleGroup& g, std::size_t begin, std::size_t end, StepEnergy& sum)
 	{
-		ConcreteState* state = a.state + 3 * (begin - g.begin);
-		for (std::size_t i = begin; i < end; i++, state += 3) {
-			const LoadedElement<double>     element = loadElement<Frame, double>(a, i);
-			const SubElementTensors<double> strain  = subElementStrains(element.reference, element.du);
-			SubElementTensors<double>       stress;
-			for (int k = 0; k < 3; k++) {
-				a.update(*a.concrete, a.fractureEnergy[i], PlaneTensor { strain[k].xx, strain[k].yy, 0, strain[k].xy }, a.dt, state[k]);
-				stress[k] = { state[k].stress.xx, state[k].stress.yy, state[k].stress.xy };
+		constexpr std::size_t                   most = 16;
+		std::array<LoadedElement<double>, most> element;
+		std::array<PlaneTensor, 3 * most>       strain;
+		std::array<double, 3 * most>            fractureEnergy;
+		for (std::size_t first = begin; first < end; first += most) {
+			const std::size_t count = std::min(most, end - first);
+			for (std::size_t j = 0; j < count; j++) {
+				element[j]         = loadElement<Frame, double>(a, first + j);
+				const auto strains = subElementStrains(element[j].reference, element[j].du);
+				for (std::size_t k = 0; k < 3; k++) {
+					strain[3 * j + k]         = { strains[k].xx, strains[k].yy, 0, strains[k].xy };
+					fractureEnergy[3 * j + k] = a.fractureEnergy[first + j];
+				}
 			}
-			RelativeDisplacements<double> q        = stressForces(element.reference, stress, g.thickness);
-			double                        rotation = 0;
-			addRotation<Frame, energy>(g, element, q, rotation);
-			storeForces<Frame>(a, i, element, q);
-			if constexpr (energy) {
-				const double volume = 0.5 * g.thickness * element.reference.twiceSubArea();
-				sum.rotation += rotation;
-				for (int k = 0; k < 3; k++) {
-					sum.elastic += volume * storedEnergy(state[k]);
-					sum.plastic += volume * state[k].plasticDissipation;
-					sum.damage += volume * state[k].damageDissipation;
+			ConcreteState* state = a.state + 3 * (first - g.begin);
+			a.update(*a.concrete, fractureEnergy.data(), strain.data(), a.dt, state, 3 * count);
+			for (std::size_t j = 0; j < count; j++, state += 3) {
+				SubElementTensors<double> stress;
+				for (std::size_t k = 0; k < 3; k++)
+					stress[k] = { state[k].stress.xx, state[k].stress.yy, state[k].stress.xy };
+				RelativeDisplacements<double> q = stressForces(element[j].reference, stress, g.thickness);
+				addRotation<Frame, energy>(g, element[j], q, sum.rotation);
+				storeForces<Frame>(a, first + j, element[j], q);
+				if constexpr (energy) {
+					const double volume = 0.5 * g.thickness * element[j].reference.twiceSubArea();
+					for (std::size_t k = 0; k < 3; k++) {
+						sum.elastic += volume * storedEnergy(state[k]);
+						sum.plastic += volume * state[k].plasticDissipation;
+						sum.damage += volume * state[k].damageDissipation;
+					}
 				}
 			}
 		}

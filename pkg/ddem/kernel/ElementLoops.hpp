@@ -2,6 +2,7 @@
 // Loops over the triangles of one group: internal forces of elastic and concrete elements.
 #pragma once
 
+#include <pkg/ddem/kernel/ConcreteBlock.hpp>
 #include <pkg/ddem/kernel/TriangleSystem.hpp>
 
 namespace yade::ddem {
@@ -17,7 +18,7 @@ struct ElementArrays {
 	double*                 coreForce;
 	double*                 coreMoment; ///< null unless cores rotate
 	const PreparedConcrete* concrete;   ///< of concrete groups
-	ConcreteUpdate          update;
+	ConcreteBlockUpdate     update;
 	ConcreteState*          state; ///< first state of the group
 	const double*           fractureEnergy;
 	double                  dt;
