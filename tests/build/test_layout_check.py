@@ -12,7 +12,7 @@ import pytest
 SCRIPT = '''
 import yade
 print('YADE runs:', O.iter == 0 and len(O.bodies) == 0)
-print('classes of the plugin:', [name for name in yade.__all__ if 'Deformable' in name])
+print('classes of the plugin:', [name for name in yade.__all__ if name.startswith('DeformableE') and name.endswith('Engine')])
 from yade import ddem
 '''
 
