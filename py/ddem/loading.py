@@ -84,7 +84,7 @@ def run(until=None, steps=None, progress=True):
 	:param until: time to run to [s]; or
 	:param steps: number of steps.
 	:raises ValueError: neither or both of them, a time that has passed, no time step.
-	:raises RuntimeError: an engine is missing or the run stopped with an error.
+	:raises RuntimeError: an engine is missing or the run stopped with an error; bad input shows in the first step, and may be a ValueError.
 	"""
 	from tqdm import tqdm
 	if (until is None) == (steps is None):
@@ -103,7 +103,10 @@ def run(until=None, steps=None, progress=True):
 	with bar:
 		while O.iter < end:
 			begin, target, clock = O.iter, min(O.iter + piece, end), time.perf_counter()
-			O.run(target - begin, True)
+			if piece == 1:
+				O.step()  # O.run would miss an error that comes before it starts to wait
+			else:
+				O.run(target - begin, True)
 			bar.update(O.iter - begin)
 			if O.iter < target:
 				break  # paused

@@ -85,6 +85,11 @@ def state_positions(ids):
 	return np.array([(b.state.pos[0], b.state.pos[1]) for b in bodies(ids)])
 
 
+def state_velocities(ids):
+	"""Velocities as State has them."""
+	return np.array([(b.state.vel[0], b.state.vel[1]) for b in bodies(ids)])
+
+
 def momentum(engine):
 	"""Linear momentum [kg·m/s] of all triangles."""
 	return sum((engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")).sum(axis=0) for kind in ("node", "core"))
