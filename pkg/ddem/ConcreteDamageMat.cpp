@@ -27,6 +27,8 @@ ddem::ConcreteParameters ConcreteDamageMat::parameters() const
 	p.damageExponent           = damageExponent;
 	p.damageLimit              = damageLimit;
 	p.closureBand              = closureBand;
+	p.referenceRate            = referenceRate;
+	p.sharingTolerance         = sharingTolerance;
 	p.residual                 = residual;
 	return p;
 }

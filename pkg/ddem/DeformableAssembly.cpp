@@ -143,8 +143,9 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 		std::sort(key.begin(), key.end());
 		if (!triples.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
 
-		if (std::none_of(made.materials.begin(), made.materials.end(), [&](const Fingerprint& other) { return other.first == &material; }))
-			made.materials.emplace_back(&material, fingerprint(material));
+		const auto remembered = std::find_if(made.materials.begin(), made.materials.end(), [&](const Fingerprint& other) { return other.first == b.material; });
+		made.coreMaterial.push_back(std::size_t(remembered - made.materials.begin()));
+		if (remembered == made.materials.end()) made.materials.emplace_back(b.material, fingerprint(material));
 		const auto* concrete = dynamic_cast<const ConcreteDamageMat*>(&material);
 		const bool  plain    = !concrete || concrete->effects() == 0;
 		if (i == 0 || !sameGroup(*made.cores[i - 1], b)) {
@@ -177,6 +178,10 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 	for (std::size_t i = 0; i < made.nodes.size(); i++)
 		if (s.node.mass[i] == 0) reject(*made.nodes[i], "this DeformableNode belongs to no DeformableTriangle, so it has no mass; erase it");
 
+	for (const auto& b : made.nodes)
+		made.nodeId.push_back(b->getId());
+	for (const auto& b : made.cores)
+		made.coreId.push_back(b->getId());
 	made.nodeBlocked.resize(made.nodes.size());
 	made.coreBlocked.resize(nCores);
 	for (std::size_t i = 0; i < made.nodes.size(); i++) {
@@ -234,9 +239,9 @@ CarriedState DeformableAssembly::carry() const
                 }
 	};
 	for (std::size_t i = 0; i < nodes.size(); i++)
-		point(carried.nodes[nodes[i]->getId()], s.node, book.nodeVelocity, nodeBlocked[i], i);
+		point(carried.nodes[nodeId[i]], s.node, book.nodeVelocity, nodeBlocked[i], i);
 	for (std::size_t i = 0; i < cores.size(); i++) {
-		CarriedState::Core& core = carried.cores[cores[i]->getId()];
+		CarriedState::Core& core = carried.cores[coreId[i]];
 		point(core, s.core, book.coreVelocity, coreBlocked[i], i);
 		core.spins = s.spin.size() > 0;
 		if (core.spins) {
@@ -252,7 +257,11 @@ CarriedState DeformableAssembly::carry() const
 
 bool DeformableAssembly::materialsChanged() const
 {
-	return std::any_of(materials.begin(), materials.end(), [](const Fingerprint& known) { return fingerprint(*known.first) != known.second; });
+	for (const auto& known : materials)
+		if (fingerprint(static_cast<const DeformableElastMat&>(*known.first)) != known.second) return true;
+	for (std::size_t i = 0; i < cores.size(); i++)
+		if (cores[i]->material != materials[coreMaterial[i]].first || triangleShape(*cores[i]).thickness != system->groupOf(i).thickness) return true;
+	return false;
 }
 
 bool DeformableAssembly::upToDate(const Scene& scene)
@@ -363,19 +372,21 @@ void DeformableAssembly::exposeConstrained() const
 void DeformableAssembly::importChanges(const Scene& scene)
 {
 	bool       blockedChanged = false;
-	const auto take           = [&](const shared_ptr<Body>& b, ddem::Points& points, unsigned& blocked, std::size_t i) {
-                if ((*scene.bodies)[std::size_t(b->getId())] != b)
-                        throw std::invalid_argument(
-                                describe(*b, b->state->refPos) + " was erased from the scene: deformable nodes and triangles cannot be erased during a simulation; "
-                                "block their motion, or build the scene without them");
+	const auto take           = [&](const shared_ptr<Body>& b, Body::id_t id, ddem::Points& points, unsigned& blocked, std::size_t i) {
+                if (b->getId() != id || !scene.bodies->exists(id)) {
+                        std::ostringstream text;
+                        text << "body " << id << " at (" << b->state->refPos[0] << ", " << b->state->refPos[1]
+                             << ") m was erased: deformable nodes and triangles cannot be erased during a simulation; hold them, or build the scene without them";
+                        throw std::invalid_argument(text.str());
+                }
                 importPoint(*b, points, i);
                 blockedChanged |= b->state->blockedDOFs != blocked;
                 blocked = b->state->blockedDOFs;
 	};
 	for (std::size_t i = 0; i < nodes.size(); i++)
-		take(nodes[i], system->node, nodeBlocked[i], i);
+		take(nodes[i], nodeId[i], system->node, nodeBlocked[i], i);
 	for (std::size_t i = 0; i < cores.size(); i++) {
-		take(cores[i], system->core, coreBlocked[i], i);
+		take(cores[i], coreId[i], system->core, coreBlocked[i], i);
 		if (!system->spin.size()) continue;
 		const State& state = *cores[i]->state;
 		if (state.ori.coeffs() != turnBy(system->spin.angle[i]).coeffs()) {

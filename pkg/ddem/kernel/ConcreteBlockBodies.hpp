@@ -69,6 +69,7 @@ inline void advanceBatch(const PreparedConcrete& concrete, const double* fractur
 	s.strain        = loadTensors<Batch>(&state->strain.xx, stride);
 	s.plasticStrain = loadTensors<Batch>(&state->plasticStrain.xx, stride);
 	s.damage        = damages ? loadTensors<Batch>(&state->damage.xx, stride) : PlaneTensorOf<Batch> { zero, zero, zero, zero };
+	s.closure       = damages ? loadNumbers<Batch>(&state->closure, stride) : zero;
 	s.stiffening    = stiffens ? loadNumbers<Batch>(&state->stiffening, stride) : zero;
 	if constexpr (books) {
 		s.plasticDissipation = loadNumbers<Batch>(&state->plasticDissipation, stride);
@@ -81,8 +82,9 @@ inline void advanceBatch(const PreparedConcrete& concrete, const double* fractur
 
 	storeTensors(s.stress, &state->stress.xx, stride);
 	storeTensors(s.strain, &state->strain.xx, stride);
-	if constexpr (flows) storeTensors(s.plasticStrain, &state->plasticStrain.xx, stride);
+	if constexpr (flows || damages) storeTensors(s.plasticStrain, &state->plasticStrain.xx, stride);
 	if constexpr (flows && damages) storeTensors(s.damage, &state->damage.xx, stride);
+	if constexpr (damages) storeNumbers(s.closure, &state->closure, stride);
 	if constexpr (stiffens) storeNumbers(s.stiffening, &state->stiffening, stride);
 	if constexpr (books) {
 		storeNumbers(s.plasticDissipation, &state->plasticDissipation, stride);

@@ -73,4 +73,24 @@ inline Number crackOpenness(const PreparedConcrete& concrete, const DamageMeasur
 	return select(normal >= 0, Number(1), max(Number(0), 1 + normal / band));
 }
 
+/// Share [-], at most 1, of the elastic strain that stays elastic when the stiffness changes because a crack closes or opens; the rest becomes permanent slip.
+/// The report's stiffness comes back at once when a crack closes, in all directions. At fixed elastic strain that would create the energy ½ ε:(C_now − C_before):ε
+/// in every closure, and a broken sample whose cracks chatter would feed on it without end. So a change of openness may lower the stored energy, never raise it:
+/// where it would rise, the elastic strain shrinks until it does not. Where only the crack-normal stress acts it is zero at closure, and nothing slips.
+template <class Number>
+inline Number keptElasticShare(
+        const PreparedConcrete&      concrete,
+        const DamageMeasure<Number>& damage,
+        const Number&                effectBefore,
+        const Number&                effectNow,
+        const PlaneTensorOf<Number>& elasticStrain)
+{
+	using std::sqrt;
+	const auto twiceEnergy = [&](const Number& effect) {
+		return doubleDot(degradedStress(concrete.lambda, concrete.twoShear, effect, damage.loss, elasticStrain), elasticStrain);
+	};
+	const Number before = twiceEnergy(effectBefore), now = twiceEnergy(effectNow);
+	return select(now > before, sqrt(before / now), Number(1));
+}
+
 } // namespace yade::ddem

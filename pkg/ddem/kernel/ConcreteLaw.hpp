@@ -80,15 +80,21 @@ inline void advanceConcrete(
 {
 	constexpr bool flows = effects & ConcreteEffects::Flow, damages = effects & ConcreteEffects::Damage,
 	               stiffens = effects & ConcreteEffects::EquationOfState, books = effects & ConcreteEffects::Energy;
-	const PlaneTensorOf<Number> elasticStrain = newStrain - state.plasticStrain;
+	PlaneTensorOf<Number> plasticStrain = state.plasticStrain, elasticStrain = newStrain - plasticStrain;
 
 	DamageMeasure<Number> damage {}, grown {};
 	Number                open(1), effect(0), factor(1);
 	damage.integrity = Number(1);
 	if constexpr (damages) {
-		damage = grown = measureDamage(concrete, state.damage);
-		open           = crackOpenness(concrete, damage, elasticStrain);
-		effect         = stiffnessEffect(concrete, open);
+		damage = grown            = measureDamage(concrete, state.damage);
+		open                      = crackOpenness(concrete, damage, elasticStrain);
+		effect                    = stiffnessEffect(concrete, open);
+		const Number effectBefore = stiffnessEffect(concrete, 1 - state.closure);
+		if (any(effect > effectBefore) || any(effect < effectBefore)) {
+			const PlaneTensorOf<Number> before = state.strain - state.plasticStrain;
+			plasticStrain                      = plasticStrain + (1 - keptElasticShare(concrete, damage, effectBefore, effect, before)) * before;
+			elasticStrain                      = newStrain - plasticStrain;
+		}
 	}
 	const auto stressOf = [&](const DamageMeasure<Number>& with, const PlaneTensorOf<Number>& strain) {
 		if constexpr (damages) return degradedStress(concrete.lambda, concrete.twoShear, effect, with.loss, strain);
@@ -98,6 +104,8 @@ inline void advanceConcrete(
 	PlaneTensorOf<Number>   stress = stressOf(damage, elasticStrain);
 	ConcreteStateOf<Number> next   = state;
 	next.strain                    = newStrain;
+	next.plasticStrain             = plasticStrain;
+	if constexpr (damages) next.closure = 1 - open;
 
 	if constexpr (flows) {
 		const Number strain = strainRateMeasure(newStrain - state.strain); // ė_N dt
@@ -105,7 +113,7 @@ inline void advanceConcrete(
 			if constexpr (stiffens) factor = 1 + state.stiffening;
 			const auto predictor = [&](const PlaneTensorOf<Number>& along) { return factor * stressOf(damage, along); };
 			const auto increment = flowIncrement<effects>(concrete, fractureEnergy, factor * stress, predictor, damage, open, strain, dt);
-			next.plasticStrain   = state.plasticStrain + increment.plasticStrain;
+			next.plasticStrain   = plasticStrain + increment.plasticStrain;
 			if constexpr (damages) {
 				next.damage = state.damage + increment.damage;
 				grown       = measureDamage(concrete, next.damage);
