@@ -205,6 +205,20 @@ def test_smoothing_evens_angles_out():
 	assert np.percentile(smooth.angles.min(axis=1), 5) > np.percentile(rough.angles.min(axis=1), 5) + 2
 
 
+@pytest.mark.parametrize("smoothing", [3, 10, 40])
+def test_angle_bound_holds_after_smoothing_of_steep_fields(smoothing):
+	# Smoothing alone leaves angles down to 16 degrees here.
+	for corners in range(5, 12):
+		m = mesh.polygon(mesh.disc(0, 0, 1, corners), size=lambda x, y: 0.02 + 0.9 * math.hypot(x - 0.1, y), smoothing=smoothing)
+		assert m.angles.min() >= GUARANTEED_ANGLE
+
+
+def test_smoothing_keeps_to_the_size_field():
+	plate = mesh.polygon(mesh.box(0, 0, 0.1, 0.2), holes=[HOLE], size=towards_hole, smoothing=40)
+	relative = plate.sizes / [towards_hole(x, y) for x, y in plate.centroids]
+	assert np.log(relative).std() < 0.15  # 0.11; nodes that forget the field make it 0.22
+
+
 def test_nested_regions_and_borders_in_common():
 	regions = {"outer": mesh.box(0, 0, 0.6, 1), "inner": mesh.box(0.2, 0.2, 0.4, 0.4), "beside": mesh.box(0.6, 0.5, 1, 1), "slanted": [(0.7, 0.1), (0.9, 0.2), (0.8, 0.4)]}
 	plate = mesh.polygon(mesh.box(0, 0, 1, 1), size=0.1, regions=regions)

@@ -56,7 +56,8 @@ def _clockwise(mesh):
 	turned = np.flatnonzero(mesh.areas < 0)
 	if len(turned):
 		raise ValueError(
-			f"{_triangle(mesh, turned[0])} is clockwise{_more(turned)}; triangles must be counter-clockwise: use mesh.flipped(), or make or read it with orient=True"
+			f"{_triangle(mesh, turned[0])} is clockwise{_more(turned)}; triangles must be counter-clockwise: use mesh.flipped(), or make "
+			"or read it with orient=True"
 		)
 
 
@@ -64,7 +65,9 @@ def _duplicates(mesh):
 	_, first, inverse = np.unique(np.sort(mesh.triangles, axis=1), axis=0, return_index=True, return_inverse=True)
 	again = np.flatnonzero(first[inverse.reshape(-1)] != np.arange(len(mesh.triangles)))
 	if len(again):
-		raise ValueError(f"{_triangle(mesh, again[0])} is the same as triangle {first[inverse.reshape(-1)[again[0]]]}{_more(again)}; remove one of them")
+		raise ValueError(
+			f"{_triangle(mesh, again[0])} is the same as triangle {first[inverse.reshape(-1)[again[0]]]}{_more(again)}; remove one of them"
+		)
 
 
 def _nodes(mesh):
@@ -76,8 +79,8 @@ def _nodes(mesh):
 	if len(twins):
 		a, b = sorted(twins.tolist())[0]
 		raise ValueError(
-			f"nodes {a} and {b} are both at {_point(mesh.nodes[a])}{_more(twins)}; the triangles there are not joined: use one node for both, for example by "
-			"merging duplicate nodes in the program that made the mesh"
+			f"nodes {a} and {b} are both at {_point(mesh.nodes[a])}{_more(twins)}; the triangles there are not joined: use one node for "
+			"both, for example by merging duplicate nodes in the program that made the mesh"
 		)
 
 
@@ -88,7 +91,8 @@ def _manifold(mesh):
 		a, b = edges[crowded[0]]
 		triangles = ", ".join(str(t) for t in np.flatnonzero(unique == crowded[0]) // 3)
 		raise ValueError(
-			f"the edge between nodes {a} and {b}, {_point(mesh.nodes[a])} to {_point(mesh.nodes[b])}, belongs to {count[crowded[0]]} triangles ({triangles})"
+			f"the edge between nodes {a} and {b}, {_point(mesh.nodes[a])} to {_point(mesh.nodes[b])}, belongs to {count[crowded[0]]} "
+			f"triangles ({triangles})"
 			f"{_more(crowded)}; at most two can share an edge"
 		)
 
@@ -100,8 +104,8 @@ def _overlaps(mesh):
 	first, second, node = conflict
 	if node >= 0:
 		raise ValueError(
-			f"node {node} at {_point(mesh.nodes[node])} of triangle {first} lies on an edge of {_triangle(mesh, second)} without being one of its nodes; the two "
-			"are not joined: split that triangle at the node"
+			f"node {node} at {_point(mesh.nodes[node])} of triangle {first} lies on an edge of {_triangle(mesh, second)} without being "
+			"one of its nodes; the two are not joined: split that triangle at the node"
 		)
 	raise ValueError(f"{_triangle(mesh, first)} overlaps {_triangle(mesh, second)}; remove one of them or move its nodes")
 

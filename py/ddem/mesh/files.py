@@ -18,8 +18,8 @@ _REGION = "region"  # cell array with the region's number; "region:NAME" marks t
 def read(path, orient=False):
 	"""Read a plane triangle mesh from a Gmsh, VTK or other file known to meshio.
 
-	Physical surfaces of Gmsh become regions: under their name, or as "physical N" where they have none. Points and curves in the file are ignored, points of no
-	triangle dropped.
+	Physical surfaces of Gmsh become regions: under their name, or as "physical N" where they have none. Points and curves in the file are ignored,
+	points of no triangle dropped.
 
 	:param orient: turn clockwise triangles over
 	"""
@@ -108,11 +108,17 @@ def _check_gmsh_text(path):
 		number = 1 + text.count(b"\n", 0, line.start())
 		if not line.group(1):
 			if section:
-				raise ValueError(f"{path!r}, line {number}: ${line.group(2).decode()} begins before ${section} of line {opened} has ended; the file is damaged")
+				raise ValueError(
+					f"{path!r}, line {number}: ${line.group(2).decode()} begins before ${section} of line {opened} has ended; the "
+					"file is damaged"
+				)
 			section, start, opened = line.group(2).decode(), line.end(), number
 			continue
 		if section != line.group(2).decode():
-			raise ValueError(f"{path!r}, line {number}: $End{line.group(2).decode()} does not end {'$' + section if section else 'any section'}; the file is damaged")
+			raise ValueError(
+				f"{path!r}, line {number}: $End{line.group(2).decode()} does not end {'$' + section if section else 'any section'}; "
+				"the file is damaged"
+			)
 		if section in ("Nodes", "Elements", "Entities"):
 			strange = re.search(rb"[^\s0-9eE.+-]\S*", text[start:line.start()])
 			if strange:
@@ -122,10 +128,15 @@ def _check_gmsh_text(path):
 			rows = text[start:line.start()].split(b"\n")[1:]
 			rows = [row for row in rows if row.strip()]
 			if rows and rows[0].strip().isdigit() and int(rows[0]) != len(rows) - 1:
-				raise ValueError(f"{path!r}, line {opened + 1}: ${section} announces {int(rows[0])} lines, but {len(rows) - 1} follow; the file is damaged")
+				raise ValueError(
+					f"{path!r}, line {opened + 1}: ${section} announces {int(rows[0])} lines, but {len(rows) - 1} follow; the "
+					"file is damaged"
+				)
 		section = None
 	if section:
-		raise ValueError(f"{path!r}, line {1 + text.count(bytes([10]))}: the file ends within ${section}, which began in line {opened}; it is truncated")
+		raise ValueError(
+			f"{path!r}, line {1 + text.count(bytes([10]))}: the file ends within ${section}, which began in line {opened}; it is truncated"
+		)
 
 
 def _plane(points, path):

@@ -10,7 +10,7 @@ from .outline import Rings, box, distance, inside, signed_area
 from .triangles import Mesh
 
 PATTERNS = ("crossed", "alternating", "unstructured")
-LIMIT = 5_000_000  # triangles; about 10 GB in a YADE scene
+LIMIT = 5_000_000  # triangles; about 15 GB in a YADE scene, whose bodies take 2.5 kB a triangle before the engine takes its part
 
 # With this bound on the longest edge, CGAL's meshes have the wanted size as their mean edge length (within 5 %, measured on rectangles and discs).
 _LONGEST_EDGE = 1.45
@@ -28,8 +28,8 @@ def rectangle(width, height, size=None, pattern="crossed", regions=None, nx=None
 	:param pattern: "crossed": each cell cut into four triangles by both diagonals (no preferred direction);
 		"alternating": each cell cut into two, the direction of the diagonal alternating like the stripes of a union jack;
 		"unstructured": :func:`polygon`, which also takes holes=, min_angle=, smoothing=, seed= and limit=
-	:param regions: name -> polygon, as for :func:`polygon`; but in a regular mesh a triangle belongs to a region when its centroid lies in it, so the region's border
-		follows the nearest mesh lines; a warning gives the error of its area above 2.5 %. An unstructured mesh has exact borders.
+	:param regions: name -> polygon, as for :func:`polygon`; but in a regular mesh a triangle belongs to a region when its centroid lies in it, so the
+		region's border follows the nearest mesh lines; a warning gives the error of its area above 2.5 %. An unstructured mesh has exact borders.
 	:param nx, ny: number of cells, instead of size
 
 	The meshes of Zubelewicz (2018) are "crossed" with 10 mm cells: 0.1 m x 0.4 m gives its 1600 triangles, 0.1 m x 0.2 m its 800, and box(0.043, 0.093,
@@ -58,8 +58,8 @@ def rectangle(width, height, size=None, pattern="crossed", regions=None, nx=None
 		wanted, found = signed_area(shape), mesh.areas[inside(mesh.centroids, shape)].sum()
 		if abs(found / wanted - 1) > _AREA_TOLERANCE:
 			warnings.warn(
-				f"region {name!r}: the triangles with their centroid in it cover {found:.4g} m² instead of {wanted:.4g} m² ({found / wanted - 1:+.1%}); choose a "
-				f"size whose mesh lines meet its border, or pattern=\"unstructured\", which follows it exactly",
+				f"region {name!r}: the triangles with their centroid in it cover {found:.4g} m² instead of {wanted:.4g} m² "
+				f"({found / wanted - 1:+.1%}); choose a size whose mesh lines meet its border, or pattern=\"unstructured\", which follows it exactly",
 				stacklevel=2
 			)
 	return result
@@ -70,10 +70,10 @@ def polygon(outline, holes=(), size=None, regions=None, min_angle=20.6, smoothin
 
 	:param outline: corners [m] in order; either direction
 	:param holes: polygons inside the outline; they may not touch it or each other
-	:param size: wanted edge length [m]: a number, or a function of x and y [m]. The mean edge length is the size within 5 %, no edge is longer than 1.8 times the
-		size at the centroid of its triangle. A function should change slowly (by less than about 0.3 m per m), since the mesh cannot follow it faster.
-	:param regions: name -> polygon inside the outline; its border consists of triangle edges, so its area is exact. Borders may touch (share corners and edges) but
-		not cross; of nested regions the later one wins.
+	:param size: wanted edge length [m]: a number, or a function of x and y [m]. The mean edge length is the size within 5 %, no edge is longer than 1.8
+		times the size at the centroid of its triangle. A function should change by less than about 0.3 m per m; the mesh cannot follow it faster.
+	:param regions: name -> polygon inside the outline; its border consists of triangle edges, so its area is exact. Borders may touch (share corners and
+		edges) but not cross; of nested regions the later one wins.
 	:param min_angle: bound on the smallest angle [degree], at most 20.7, kept except where borders meet at less than 60 degrees. Typical meshes reach 28.
 	:param smoothing: number of smoothing steps; 0 for none
 	:param seed: a whole number draws another, equally good mesh; the same input and seed always give the same mesh
@@ -168,7 +168,7 @@ class _SizeField:
 
 
 def _divided(rings, field):
-	"""Points, segments and rings with every edge cut into pieces of the wanted size, so that the mesh generator finds good borders and need not halve them."""
+	"""Points, segments and rings with every edge cut into even pieces of the wanted size; left to the mesh generator, edges would be halved."""
 	points, cuts = [*rings.points], {}
 	for a, b in rings.segments().tolist():
 		start, end = rings.points[a], rings.points[b]
@@ -245,8 +245,8 @@ def _with_regions(mesh, shapes):
 		chosen = inside(mesh.centroids, shape)
 		if not chosen.any():
 			raise ValueError(
-				f"region {name!r} between ({shape[:, 0].min():.6g}, {shape[:, 1].min():.6g}) and ({shape[:, 0].max():.6g}, {shape[:, 1].max():.6g}) m holds no "
-				"triangle's centroid; use a smaller size, or pattern=\"unstructured\""
+				f"region {name!r} between ({shape[:, 0].min():.6g}, {shape[:, 1].min():.6g}) and ({shape[:, 0].max():.6g}, "
+				f"{shape[:, 1].max():.6g}) m holds no triangle's centroid; use a smaller size, or pattern=\"unstructured\""
 			)
 		numbers[chosen] = number
 	return Mesh(mesh.nodes, mesh.triangles, numbers, ("", *shapes))
@@ -275,4 +275,7 @@ def _check_count(count, limit, what):
 	if not limit > 0:
 		raise ValueError(f"limit is {limit} triangles; it must be positive")
 	if count > limit:
-		raise ValueError(f"{what} would give about {count:.2g} triangles, more than the limit of {limit:.2g}; use a larger size, or raise limit= (a scene needs about 2 kB a triangle)")
+		raise ValueError(
+			f"{what} would give about {count:.2g} triangles, more than the limit of {limit:.2g}; use a larger size, or raise limit= (a "
+			"scene needs about 3 kB a triangle)"
+		)

@@ -64,7 +64,7 @@ def inside(points, corners):
 
 
 def distance(points, a, b):
-	"""Distance [m] of each point from the segments a[j]–b[j], and how far along the segment (0 to 1) the nearest place is: two (points, segments) arrays."""
+	"""Distance [m] of each point from each segment a[j]–b[j], and how far along it (0 to 1) the nearest place is: two (points, segments) arrays."""
 	edge = b - a
 	along = np.clip(((points[:, None] - a) * edge).sum(axis=2) / (edge**2).sum(axis=1), 0, 1)
 	return np.linalg.norm(points[:, None] - a - along[:, :, None] * edge, axis=2), along
@@ -112,7 +112,8 @@ class Rings:
 			for point in self.chains[i]:
 				if int(point) in taken:
 					raise ValueError(
-						f"{self.names[i]} touches {taken[int(point)]} at ({self.points[point, 0]:.6g}, {self.points[point, 1]:.6g}) m; make it part of that one, or move it"
+						f"{self.names[i]} touches {taken[int(point)]} at ({self.points[point, 0]:.6g}, "
+						f"{self.points[point, 1]:.6g}) m; make it part of that one, or move it"
 					)
 			taken.update({int(point): self.names[i] for point in self.chains[i]})
 		for i in range(1, len(self.chains)):
@@ -126,8 +127,9 @@ class Rings:
 				if wrong.any():
 					x, y = middles[np.flatnonzero(wrong)[0]]
 					raise ValueError(
-						f"{self.names[i]} lies {'outside of the outline' if j == 0 else 'in ' + self.names[j]} at ({x:.6g}, {y:.6g}) m; "
-						f"the outline spans ({outline[:, 0].min():.6g}, {outline[:, 1].min():.6g}) to ({outline[:, 0].max():.6g}, {outline[:, 1].max():.6g}) m"
+						f"{self.names[i]} lies {'outside of the outline' if j == 0 else 'in ' + self.names[j]} at ({x:.6g}, "
+						f"{y:.6g}) m; the outline spans ({outline[:, 0].min():.6g}, {outline[:, 1].min():.6g}) to "
+						f"({outline[:, 0].max():.6g}, {outline[:, 1].max():.6g}) m"
 					)
 
 
@@ -141,30 +143,37 @@ def _shared(edges, others):
 
 
 def _join(shapes, names):
-	# Common points first (the outline's positions win), then edges split where a corner of another ring lies on them.
+	# Common points first (the first polygon's position counts, so the outline's), then edges split where a corner of another ring lies on them.
+	from scipy.spatial import cKDTree  # slow to import
 	near = _SNAP * np.ptp(shapes[0], axis=0).max()
-	points, chains = np.empty((0, 2)), []
-	for shape, name in zip(shapes, names):
-		chain = []
-		for k, corner in enumerate(shape):
-			same = np.flatnonzero(np.abs(points - corner).max(axis=1, initial=0) <= near)
-			if len(same) == 0:
-				points = np.vstack([points, corner])
-			index = int(same[0]) if len(same) else len(points) - 1
-			if index in chain:
-				raise ValueError(f"{name} touches itself at corner {k}, ({corner[0]:.6g}, {corner[1]:.6g}) m; each corner must occur once")
-			chain.append(index)
-		chains.append(chain)
-	return points, [_split(points, chain, name, near) for chain, name in zip(chains, names)]
+	corners = np.vstack(shapes)
+	first = np.arange(len(corners))
+	for a, b in sorted(cKDTree(corners).query_pairs(near)):
+		first[b] = first[a]
+	kept, index = np.unique(first, return_inverse=True)
+	points, chains = corners[kept], np.split(index.reshape(-1), np.cumsum([len(shape) for shape in shapes])[:-1])
+	for chain, name in zip(chains, names):
+		again = np.setdiff1d(np.arange(len(chain)), np.unique(chain, return_index=True)[1])
+		if len(again):
+			x, y = points[chain[again[0]]]
+			raise ValueError(f"{name} touches itself at corner {again[0]}, ({x:.6g}, {y:.6g}) m; each corner must occur once")
+	tree = cKDTree(points)
+	return points, [_split(points, tree, chain, name, near) for chain, name in zip(chains, names)]
 
 
-def _split(points, chain, name, near):
-	result = []
-	for a, b in _edges(chain):
+def _split(points, tree, chain, name, near):
+	edges, result = _edges(chain), []
+	start, end = points[edges[:, 0]], points[edges[:, 1]]
+	around = tree.query_ball_point((start + end) / 2, np.linalg.norm(end - start, axis=1) / 2 + near)
+	for (a, b), close in zip(edges.tolist(), around):
 		result.append(a)
-		gap, along = distance(points, points[[a]], points[[b]])
-		on = np.setdiff1d(np.flatnonzero(gap[:, 0] <= near), [a, b])
+		others = np.array([index for index in sorted(close) if index not in (a, b)], dtype=int)
+		if len(others) == 0:
+			continue
+		gap, along = distance(points[others], points[[a]], points[[b]])
+		touching = gap[:, 0] <= near
+		on = others[touching]
 		for own in np.intersect1d(on, chain):
 			raise ValueError(f"{name} touches itself at ({points[own, 0]:.6g}, {points[own, 1]:.6g}) m; its border must not meet itself")
-		result.extend(on[np.argsort(along[on, 0])])
+		result.extend(on[np.argsort(along[touching, 0])])
 	return np.array(result, dtype=np.int32)

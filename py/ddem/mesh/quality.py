@@ -68,7 +68,9 @@ class Quality:
 			("aspect", f"up to {self.largest_aspect:.2f} (equilateral: 1), {at(self.largest_aspect_triangle)}"),
 			("ruling", f"smallest height {self.smallest_height:.4g} m, {at(self.ruling_triangle)}"),
 		]
-		rows += [(f"region {name!r}" if name else "default", f"{count} triangles, {area:.6g} m²") for name, (count, area) in self.regions.items() if count]
+		for name, (count, area) in self.regions.items():
+			if count:
+				rows.append((f"region {name!r}" if name else "default", f"{count} triangles, {area:.6g} m²"))
 		width = max(len(head) for head, _ in rows)
 		return "\n".join(f"{head:<{width}}  {text}" for head, text in rows)
 

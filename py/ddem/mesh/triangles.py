@@ -114,8 +114,8 @@ class Mesh:
 	def boundary(self, where=None):
 		"""Sorted indices of nodes on the border.
 
-		:param where: a side of the bounding box ("top", "bottom", "left", "right"), or a function of the arrays x, y [m] of border nodes that says which of
-			them to take; all when left out
+		:param where: a side of the bounding box ("top", "bottom", "left", "right"), or a function of the arrays x, y [m] of border nodes that says
+			which of them to take; all when left out
 		"""
 		nodes = np.unique(self.boundary_edges())
 		if where is None:
@@ -126,8 +126,8 @@ class Mesh:
 			chosen = np.asarray(where(x, y))
 			if chosen.shape != x.shape or chosen.dtype != bool:
 				raise ValueError(
-					f"boundary(): the function must turn the arrays x, y ({len(x)} values) into as many true/false values, it gave {chosen.dtype} of shape {chosen.shape}; "
-					"combine conditions with & and |, not with and/or"
+					f"boundary(): the function must turn the arrays x, y ({len(x)} values) into as many true/false values, it "
+					f"gave {chosen.dtype} of shape {chosen.shape}; combine conditions with & and |, not with and/or"
 				)
 		elif where in sides:
 			values, limit = sides[where]
@@ -160,9 +160,9 @@ class Mesh:
 		return Mesh(self.nodes, self.triangles, self.regions, self.region_names, orient=True)
 
 	def reordered(self):
-		"""The same mesh renumbered for locality in memory: triangles grouped by region, in each along a Hilbert curve; nodes in the order of their first use.
+		"""The same mesh renumbered for locality in memory.
 
-		The result does not depend on the numbering before.
+		Triangles are grouped by region, in each along a Hilbert curve; nodes follow in the order of first use. The numbering before does not matter.
 		"""
 		plain = np.lexsort(self.centroids.T)  # the curve's order within its smallest cells is that of its input
 		curve = plain[np.frombuffer(_mesh.hilbertOrder(np.ascontiguousarray(self.centroids[plain])), dtype=np.int32)]
