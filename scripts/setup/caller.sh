@@ -30,7 +30,7 @@ as_caller() {
 	if ((caller_uid == EUID)); then
 		"$@"
 	else
-		setpriv --reuid="$caller_uid" --regid="$caller_gid" --init-groups env HOME="$caller_home" "$@"
+		"$setup_dir/as_user.sh" "$caller_uid" "$caller_gid" "$caller_home" "$@"
 	fi
 }
 

@@ -4,7 +4,7 @@
 # clearing what an interrupted one has left, so a start after kill -9 goes on where it must.
 
 readonly DEBIAN_RELEASE=trixie
-readonly ROOT_NEEDS_MB=5000
+readonly ROOT_NEEDS_MB=4500
 
 root_stamp() { echo "$root/var/lib/yade-ddem/$1"; }
 
@@ -25,7 +25,7 @@ make_debian_root() {
 	packages_stamp=$(root_stamp "packages-$(listed_packages | sha256sum | cut -c1-16)")
 	[[ -f $packages_stamp ]] && return
 	require_space
-	say "making a Debian 13 environment with YADE in $root (once; about 4 GB, 4 minutes)"
+	say "making a Debian 13 environment with YADE in $root (once; about 3 GB, 3 minutes)"
 	if [[ ! -d $root ]]; then
 		[[ -x $(command -v debootstrap) && -f /usr/share/keyrings/debian-archive-keyring.gpg ]] || phase "installing debootstrap" install_debootstrap
 		phase "Debian 13 base system" make_base_system

@@ -64,7 +64,7 @@ if [[ $1 == --caller ]]; then
 	bind_file /etc/localtime
 	# This machine's own libraries and languages mean nothing inside.
 	as_whom=(env -C "$here" -u LD_LIBRARY_PATH -u LD_PRELOAD -u PYTHONHOME -u LC_ALL LANG=C.UTF-8 "HOME=$home")
-	((uid == 0)) || as_whom=(setpriv "--reuid=$uid" "--regid=$gid" --init-groups "${as_whom[@]}")
+	((uid == 0)) || as_whom=("$(dirname "$(readlink -f "$0")")/as_user.sh" "$uid" "$gid" "$home" "${as_whom[@]}") # the checkout is visible inside
 else
 	shift
 fi

@@ -77,7 +77,7 @@ exec_inside() {
 	if [[ $root ]]; then
 		exec "$setup_dir/enter_root.sh" "$root" --caller "$caller_uid" "$caller_gid" "$caller_home" "$checkout" "$cache_dir" "${visible[@]}" -- "$@"
 	elif ((caller_uid != EUID)); then
-		exec setpriv --reuid="$caller_uid" --regid="$caller_gid" --init-groups env HOME="$caller_home" "$@"
+		exec "$setup_dir/as_user.sh" "$caller_uid" "$caller_gid" "$caller_home" "$@"
 	else
 		exec "$@"
 	fi
