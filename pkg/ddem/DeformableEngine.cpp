@@ -126,7 +126,6 @@ void DeformableEngine::assembleIfNeeded(Scene& of)
 	savedVersion = 0;
 	stale        = false;
 	checkedStep  = 0;
-	checkedEngines.clear();
 	maskIntegrators(of);
 	for (const auto& b : assembly.cores)
 		if (rotation == "cosserat" && static_cast<const DeformableElastMat&>(*b->material).rotationStiffness < 1e-3) {
@@ -142,7 +141,11 @@ DeformableAssembly& DeformableEngine::current()
 	if (!mine && assembly.system) return assembly; // of a scene that is gone, or an engine taken out of it
 	if (!mine) throw std::runtime_error("this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
 	assembleIfNeeded(now);
-	if (exposed && !Omega::instance().isRunning()) assembly.importChanges(now);
+	if (Omega::instance().isRunning()) return assembly;
+	if (exposed) assembly.importChanges(now);
+	else // paused between two looks
+		assembly.exposeAll();
+	exposed = true;
 	return assembly;
 }
 
@@ -218,8 +221,8 @@ void DeformableEngine::checkTimeStep()
 
 void DeformableEngine::action()
 {
+	checkEngines(); // before anything is read from bodies that an engine in the wrong place may have spoilt
 	assembleIfNeeded(*scene);
-	checkEngines();
 	if (exposed) {
 		assembly.importChanges(*scene);
 		checkDrivenNodes();

@@ -38,7 +38,7 @@ public:
 		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind).\n\n"
 		"Place it after the engines that add forces and after :yref:`ForceResetter`. Results are the same, bit by bit, for any number of threads.\n\n"
 		"Errors: a time step above :yref:`criticalTimeStep<DeformableEngine.criticalTimeStep>`, engines in the wrong order, unusable triangles and a state that is not finite stop the run with the body, its place and the way out.\n\n"
-		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old.",
+		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old; after O.pause(), reading anything from the engine brings it up to date.",
 		((std::string,rotation,"cosserat",Attr::triggerPostLoad,"How elements follow rotation: 'cosserat' (cores rotate, tied by :yref:`rotationStiffness<DeformableElastMat.rotationStiffness>`), 'corotational' (frame from the polar decomposition of the vertices' deformation, no rotational inertia) or 'none' (small rotations, cheapest)."))
 		((Real,vertexShare,1./6,Attr::triggerPostLoad,"Share :math:`\\alpha` [-] of a triangle's mass that sits in its vertices, a third of it in each; below 1/4 with 'cosserat'. Governs the stable time step."))
 		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored."))

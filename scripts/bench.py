@@ -1,0 +1,76 @@
+# GPL v2 or later, see LICENSE.
+"""Speed of the plugin's engines beside YADE's own, measured in one run.
+
+Run:     scripts/ddem bench        (or: scripts/ddem run scripts/bench.py [--quick] [--triangles N …])
+Shows:   nanoseconds per triangle-step, per bond-step and per body-step of each engine, median of several repeats, on one thread unless OMP_NUM_THREADS says otherwise.
+Takes:   about two minutes; --quick half a minute.
+Expect:  elastic triangles at a small multiple of memory speed, well below the 122-196 ns that the same bodies cost when NewtonIntegrator moves them; ratios between
+         rows hold from machine to machine, absolute times do not.
+"""
+import argparse
+import statistics
+import sys
+
+from yade import ddem, timing
+
+parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+parser.add_argument("--triangles", type=int, nargs="+", default=[13000, 130000], help="sizes of the deformable samples (default: %(default)s)")
+parser.add_argument("--repeats", type=int, default=5, help="measurements of each row; the median is printed (default: %(default)s)")
+parser.add_argument("--quick", action="store_true", help="small samples, few repeats")
+options = parser.parse_args(sys.argv[1:])
+if options.quick:
+	options.triangles, options.repeats = [3200], 3
+if min(options.triangles) < 8 or options.repeats < 1:
+	parser.error("--triangles must be at least 8 and --repeats at least 1")
+
+
+def measure(engine, count, steps):
+	"""Median nanoseconds per item and step of an engine (None: of the whole step)."""
+	O.timingEnabled = True
+	O.run(max(2, steps // 10), True)  # first touch, assembly
+	samples = []
+	for _ in range(options.repeats):
+		timing.reset()
+		O.run(steps, True)
+		chosen = O.engines if engine is None else [engine]
+		samples.append(sum(e.execTime for e in chosen) / steps / count)
+	return statistics.median(samples)
+
+
+def row(name, item, count, nanoseconds):
+	print(f"{name:<58}{count:>9} {item:<10}{nanoseconds:>9.1f} ns", flush=True)
+
+
+def deformable(count, material, rotation, energy=False):
+	"""A block of about `count` triangles that vibrates (elastic) or is crushed (concrete)."""
+	O.reset()
+	O.materials.append(material)
+	cells = round((count / 8)**0.5)
+	block = ddem.append(ddem.mesh.rectangle(width=0.10, height=0.20, nx=cells, ny=2 * cells, pattern="crossed"), material)
+	block.hold(block.boundary("bottom"))
+	block.drive(block.boundary("top"), (0, -10))
+	engine = DeformableEngine(rotation=rotation)
+	O.engines = [ForceResetter(), engine]
+	O.trackEnergy = energy
+	O.dt = ddem.time_step(0.5)
+	return engine, len(block.triangle_ids)
+
+
+print(f"{'engine':<58}{'items':>9} {'':<10}{'per step':>12}")
+for size in options.triangles:
+	steps = max(20, 2_000_000 // size)
+	for rotation in ("none", "corotational", "cosserat"):
+		engine, count = deformable(size, DeformableElastMat(bulk=30e9, shear=26e9, density=2400), rotation)
+		row(f"DeformableEngine, elastic, rotation {rotation}", "triangles", count, measure(engine, count, steps))
+	engine, count = deformable(size, DeformableElastMat(bulk=30e9, shear=26e9, density=2400), "cosserat", energy=True)
+	row("DeformableEngine, elastic, cosserat, energy book", "triangles", count, measure(engine, count, steps))
+	engine, count = deformable(size, ConcreteDamageMat(), "cosserat")
+	row("DeformableEngine, concrete, cosserat", "triangles", count, measure(engine, count, max(20, steps // 5)))
+
+	O.reset()
+	for i in range(size):
+		O.bodies.append(utils.sphere((i % 100, i // 100, 0), 0.4))
+	newton = NewtonIntegrator(damping=0)
+	O.engines = [ForceResetter(), newton]
+	O.dt = 1e-9
+	row("NewtonIntegrator (YADE), free spheres", "bodies", size, measure(newton, size, max(20, steps // 5)))
