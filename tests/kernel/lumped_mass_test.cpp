@@ -46,6 +46,20 @@ TEST(LumpedMass, keepsMassCentroidAndInertiaForAnyShare)
 	}
 }
 
+TEST(LumpedMass, verticesAloneCarryTheWholeInertiaAtAQuarter) // the right share where cores do not rotate
+{
+	Random random(22);
+	for (int i = 0; i < 100; i++) {
+		const Vertices v         = random.skewedTriangle();
+		const auto     reference = makeReference(v);
+		const auto     m         = lumpMass(reference, 2400, 1, 0.25, RotationTreatment::Corotational);
+		double         inertia   = 0;
+		for (const Point& r : reference.arm)
+			inertia += m.vertex * dot(r, r);
+		EXPECT_NEAR(inertia, (3 * m.vertex + m.core) * solidGyration(v), 1e-12 * inertia);
+	}
+}
+
 TEST(LumpedMass, givesEachVertexAThirdOfTheShare) // 3-4-5 triangle of 6 m² × 1 m × 100 kg/m³ = 600 kg
 {
 	const auto m = lumpMass(makeReference({ { { 0, 0 }, { 4, 0 }, { 0, 3 } } }), 100, 1, 0.2, RotationTreatment::Cosserat);
