@@ -144,7 +144,7 @@ def spheres(centres, radii, values, label, file=None, ax=None, limits=None, sign
 		)
 		ax.add_collection(drawn)
 		if cracks is not None and len(cracks):
-			ax.add_collection(LineCollection(unit * np.asarray(cracks), colors="0.1", linewidths=0.5, capstyle="round", rasterized=True))
+			ax.add_collection(LineCollection(unit * np.asarray(cracks), colors="black", linewidths=0.3, rasterized=True))
 		if colorbar:
 			ax.figure.colorbar(drawn, ax=ax, label=label, extend=extend, shrink=0.9, aspect=25)
 		return _finish(ax, file)

@@ -36,6 +36,7 @@ ROWS = (
 	("dt_s", "time step", "µs", 1e6, "{:.3f}"),
 	("steps", "steps", "", 1, "{:,d}"),
 	("wall_s", "wall time", "s", 1, "{:.1f}"),
+	("cpu_s", "processor time", "s", 1, "{:.1f}"),
 	("ns_per_particle_step", "per particle and step", "ns", 1, "{:,.0f}"),
 	("ns_per_degree_of_freedom_step", "per degree of freedom and step", "ns", 1, "{:,.0f}"),
 )

@@ -85,12 +85,12 @@ def energy(runs):
 				base = base + values
 			shown["work of the platens"], = book.plot(strain, run.energy("input"), color="black", linewidth=0.9)
 			_label(book, None, "energy [J]" if book is axes[0, 0] else None, run.title)
-			error.semilogy(strain, np.maximum(100 * run.series["energy_error"], 1e-10), color=MODEL_COLOURS[run.model])
+			error.semilogy(strain, np.maximum(100 * np.abs(run.series["energy_error"]) / run.energy_through, 1e-10), color=MODEL_COLOURS[run.model])
 			_label(error, "axial strain [%]", "error [%]" if error is axes[1, 0] else None)
 			book.set_xlim(0, strain[-1])
 			book.set_ylim(bottom=0)
 		_same_limits([ax for ax in axes[1]])
-		fig.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=min(len(shown), 7), columnspacing=1.2, handlelength=1.4)
+		fig.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=7 if len(runs) > 1 else 3, columnspacing=1.2, handlelength=1.4)
 	return fig
 
 

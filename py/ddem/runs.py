@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from .measures import Strength, strength
 from .series import Series
 
@@ -31,8 +33,9 @@ class Run:
 	critical_dt: float  # largest stable time step at the start [s]
 	steps: int
 	wall: float  # wall time of all steps with their recording [s]
+	busy: float  # processor time of the same, all threads together [s]
 	threads: int
-	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_error, energy_… [SI]
+	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_error (what the book has too much) [SI]
 	snapshots: list  # of snapshots.TriangleSnapshot or SphereSnapshot, in order of time
 	engines: list  # (name, wall seconds, calls) in order
 	stopped: str  # why the run ended
@@ -47,8 +50,14 @@ class Run:
 
 	@property
 	def energy_error(self):
-		"""Largest error of the energy book at any record [-]."""
-		return float(self.series["energy_error"].max())
+		"""Largest error of the energy book at any record, over the largest energy that has gone through the sample [-]."""
+		return float(np.abs(self.series["energy_error"]).max() / self.energy_through)
+
+	@property
+	def energy_through(self):
+		"""The larger of the work put in and the energy found in the sample, at most [J]."""
+		found = sum(values for values in map(self.energy, ENERGY_PARTS) if values is not None)
+		return float(max(np.abs(self.energy("input")).max(), np.max(found)))
 
 	@property
 	def seconds_per_step(self):
@@ -75,6 +84,7 @@ class Run:
 			"dt_over_critical": self.dt / self.critical_dt,
 			"steps": self.steps,
 			"wall_s": self.wall,
+			"cpu_s": self.busy,
 			"setup_s": self.setup,
 			"ns_per_particle_step": 1e9 * self.seconds_per_step / self.particles,
 			"ns_per_degree_of_freedom_step": 1e9 * self.seconds_per_step / self.degrees_of_freedom,

@@ -55,6 +55,7 @@ void expectBlockEqualsSingle(const PreparedConcrete& concrete, unsigned effects,
 		EXPECT_LE(norm(a.plasticStrain - b.plasticStrain), 1e-8 * norm(b.plasticStrain) + 1e-16);
 		EXPECT_LE(norm(a.damage - b.damage), 1e-8 * norm(b.damage));
 		EXPECT_NEAR(a.stiffening, b.stiffening, 1e-8);
+		EXPECT_NEAR(a.closure, b.closure, 1e-8);
 		EXPECT_NEAR(a.plasticDissipation, b.plasticDissipation, 1e-7 * std::abs(b.plasticDissipation) + 1e-6);
 		EXPECT_NEAR(a.damageDissipation, b.damageDissipation, 1e-7 * std::abs(b.plasticDissipation) + 1e-6);
 		EXPECT_NEAR(a.stiffeningEnergy, b.stiffeningEnergy, 1e-7 * std::abs(b.plasticDissipation) + 1e-6);

@@ -36,11 +36,11 @@ TEST(CrackClosure, cyclesCreateNoEnergy) // a stiffness that comes back at fixed
 	int                  dissipating = 0;
 	for (int cycle = 0; cycle < 200; ++cycle) {
 		ConcreteState state {};
-		state.damage       = random.damage(5);
-		PlaneTensor   from { 0, 0, 0, 0 };
-		double        work = 0, through = 0;
+		state.damage = random.damage(5);
+		PlaneTensor from { 0, 0, 0, 0 };
+		double      work = 0, through = 0;
 		for (int corner = 0; corner < 6; ++corner) {
-			const PlaneTensor to = corner < 5 ? random.tensor(1e-3) : PlaneTensor { 0, 0, 0, 0 };
+			const PlaneTensor to    = corner < 5 ? random.tensor(1e-3) : PlaneTensor { 0, 0, 0, 0 };
 			constexpr int     steps = 4000;
 			for (int i = 1; i <= steps; ++i) {
 				const ConcreteState old = state;

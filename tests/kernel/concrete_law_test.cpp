@@ -134,16 +134,20 @@ TEST(ConcreteStep, resultsDoNotDependOnTheEnergyBook)
 
 TEST(ConcreteStep, atRestNothingHappens)
 {
-	Random              random(16);
-	ConcreteState       state  = follow(RandomPath(random, 3e-3, true), 300, 1e-3);
-	const ConcreteState before = state;
-	advance(state, state.strain, 1e-6); // takes the openness of the crack for the new damage
-	const ConcreteState settled = state;
-	for (int i = 0; i < 100; ++i)
-		advance(state, state.strain, 1e-6);
-	EXPECT_EQ(distance(state, settled), 0);
-	EXPECT_EQ(norm(state.plasticStrain - before.plasticStrain) + norm(state.damage - before.damage), 0);
-	EXPECT_LT(norm(state.stress - before.stress), 0.02 * norm(before.stress));
+	Random random(16);
+	for (int i = 0; i < 20; ++i) {
+		const ConcreteState moved = follow(RandomPath(random, 3e-3, i % 2 == 0), 3000, 1e-3);
+		ConcreteState       state = moved;
+		for (int k = 0; k < 50; ++k)
+			advance(state, state.strain, 1e-6); // the crack settles on the openness of its new damage and slip
+		EXPECT_LT(norm(state.stress - moved.stress), 0.05 * norm(moved.stress));
+		EXPECT_EQ(norm(state.damage - moved.damage), 0);
+		EXPECT_EQ(state.plasticDissipation, moved.plasticDissipation);
+		const ConcreteState settled = state;
+		for (int k = 0; k < 50; ++k)
+			advance(state, state.strain, 1e-6);
+		EXPECT_LT(distance(state, settled), 1e-9);
+	}
 }
 
 TEST(ConcreteStep, preExistingDamageSoftensAcrossTheDefect)
@@ -185,23 +189,34 @@ TEST(ConcreteEnergy, elasticMaterialStoresEverything)
 	EXPECT_EQ(state.plasticDissipation + state.damageDissipation + state.stiffeningEnergy, 0);
 }
 
-TEST(ConcreteEnergy, closingCracksCreateLittle) // the law's own error: stiffness that comes back under shear; stated in the documentation of the law
+TEST(ConcreteEnergy, onlyTheEquationOfStateStoresBeyondTheElasticEnergy)
 {
 	Random random(18);
-	double created = 0, dissipated = 0, largestJump = 0;
+	for (int i = 0; i < 20; ++i) {
+		ConcreteState state {};
+		state.damage = random.damage(2);
+		const RandomPath path(random, 4e-3, i % 2 == 0);
+		for (int k = 1; k <= 500; ++k)
+			advance(state, path.at(k / 500.), 1e-6, All & ~EquationOfState);
+		EXPECT_EQ(state.stiffeningEnergy, 0);
+		EXPECT_GE(storedEnergy(state), 0);
+	}
+}
+
+TEST(ConcretePaths, stressDoesNotJumpWhenCracksClose)
+{
+	Random random(25);
+	double largest = 0;
 	for (int i = 0; i < 40; ++i) {
 		const RandomPath path(random, 4e-3, i % 2 == 0);
 		ConcreteState    state {};
 		for (int k = 1; k <= 8000; ++k) {
 			const ConcreteState before = state;
 			advance(state, path.at(k / 8000.), 1e-6, All & ~EquationOfState);
-			created += std::abs(state.stiffeningEnergy - before.stiffeningEnergy);
-			largestJump = std::max(largestJump, norm(state.stress - before.stress) / norm(state.strain - before.strain));
+			largest = std::max(largest, norm(state.stress - before.stress) / norm(state.strain - before.strain));
 		}
-		dissipated += state.plasticDissipation + state.damageDissipation;
 	}
-	EXPECT_LT(created, 0.02 * dissipated);
-	EXPECT_LT(largestJump, 40 * (concrete.lambda + concrete.twoShear)); // no stress out of proportion to the step
+	EXPECT_LT(largest, 20 * (concrete.lambda + concrete.twoShear)); // 4 is usual with the band of 1 MPa, 40 without a band
 }
 
 TEST(ConcretePaths, randomPathsStayFiniteAndBounded)

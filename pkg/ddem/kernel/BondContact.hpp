@@ -54,6 +54,7 @@ struct ContactLoads {
 	Eigen::Vector3d moment2;    ///< on particle 2 [N·m]
 	double          energy;     ///< stored in both springs [J]
 	double          dissipated; ///< by sliding in this step [J]
+	bool            touching;
 };
 
 /// Turns a vector that lies in the plane of `from` into the plane of `to` by the smallest rotation, then about `to` by `spin` [rad]; keeps its length.
@@ -72,7 +73,7 @@ contactLoads(const ContactStiffness& stiffness, const ContactFriction& friction,
 	const double reach = motion.radius1 + motion.radius2, overlap = reach - motion.distance;
 	if (!(overlap > 0)) {
 		memory = ContactMemory();
-		return { Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), 0, 0 };
+		return { Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), 0, 0, false };
 	}
 	const Vector3d& n     = motion.normal;
 	const double    scale = reach / motion.distance; // turns the centres' relative velocity into one of the surfaces
@@ -99,7 +100,8 @@ contactLoads(const ContactStiffness& stiffness, const ContactFriction& friction,
 		 motion.radius1 * couple,
 		 motion.radius2 * couple,
 		 0.5 * (pressure * overlap + shear.squaredNorm() / stiffness.shear),
-		 dissipated };
+		 dissipated,
+		 true };
 }
 
 } // namespace yade::ddem

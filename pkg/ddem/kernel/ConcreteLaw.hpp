@@ -12,17 +12,19 @@ namespace yade::ddem {
 
 /// Adds the step from `old` to `now` to the energies, so that ½(σ_old + σ_new):dε = d(stored) + d(plastic) + d(damage) holds to round-off in every step.
 /// It rests on the identity, a and b being the elastic strains before and after, ½(σ_old + σ_new):(b − a) = d(½σ:ε_e) − ½ a:(C_new − C_old):b. The last
-/// term is the energy that the change of stiffness releases at fixed elastic strain. What of it the growth of damage causes, at the new pressure and
-/// openness, is dissipated; the rest (equation of state, cracks that close or open) stays in store. `undamaged` is the stress that `a` would have with
-/// the new moduli and openness but the old damage.
-template <class Number> inline void bookEnergy(const ConcreteStateOf<Number>& old, const PlaneTensorOf<Number>& undamaged, ConcreteStateOf<Number>& now)
+/// term is the energy that the change of stiffness releases at fixed elastic strain. What of it the equation of state causes stays in store, to come back with
+/// the pressure. The rest, and the work on the slip of closing cracks, is dissipated by damage. `flow` is the plastic strain that flow added.
+template <class Number> inline void bookEnergy(const ConcreteStateOf<Number>& old, const PlaneTensorOf<Number>& flow, ConcreteStateOf<Number>& now)
 {
 	const PlaneTensorOf<Number> before = old.strain - old.plasticStrain, after = now.strain - now.plasticStrain;
+	const PlaneTensorOf<Number> mean = 0.5 * (old.stress + now.stress), slip = now.plasticStrain - old.plasticStrain - flow;
 	const Number                across   = doubleDot(now.stress, before);
-	const Number                released = 0.5 * (doubleDot(old.stress, after) - across), byDamage = 0.5 * (doubleDot(undamaged, after) - across);
-	now.plasticDissipation = old.plasticDissipation + 0.5 * doubleDot(old.stress + now.stress, now.plasticStrain - old.plasticStrain);
-	now.damageDissipation  = old.damageDissipation + byDamage;
-	now.stiffeningEnergy   = old.stiffeningEnergy + (released - byDamage);
+	const Number                released = 0.5 * (doubleDot(old.stress, after) - across);
+	const Number                kept     = -0.5 * across * (now.stiffening - old.stiffening) / (1 + now.stiffening);
+
+	now.plasticDissipation = old.plasticDissipation + doubleDot(mean, flow);
+	now.stiffeningEnergy   = old.stiffeningEnergy + kept;
+	now.damageDissipation  = old.damageDissipation + (released - kept + doubleDot(mean, slip));
 }
 
 /// What the flow of one step adds.
@@ -106,13 +108,14 @@ inline void advanceConcrete(
 	next.strain                    = newStrain;
 	next.plasticStrain             = plasticStrain;
 	if constexpr (damages) next.closure = 1 - open;
+	FlowIncrement<Number> increment {};
 
 	if constexpr (flows) {
 		const Number strain = strainRateMeasure(newStrain - state.strain); // ė_N dt
 		if (any(strain > 0)) {
 			if constexpr (stiffens) factor = 1 + state.stiffening;
 			const auto predictor = [&](const PlaneTensorOf<Number>& along) { return factor * stressOf(damage, along); };
-			const auto increment = flowIncrement<effects>(concrete, fractureEnergy, factor * stress, predictor, damage, open, strain, dt);
+			increment            = flowIncrement<effects>(concrete, fractureEnergy, factor * stress, predictor, damage, open, strain, dt);
 			next.plasticStrain   = plasticStrain + increment.plasticStrain;
 			if constexpr (damages) {
 				next.damage = state.damage + increment.damage;
@@ -126,7 +129,7 @@ inline void advanceConcrete(
 		factor          = 1 + next.stiffening;
 	}
 	next.stress = factor * stress;
-	if constexpr (books) bookEnergy(state, factor * stressOf(damage, state.strain - state.plasticStrain), next);
+	if constexpr (books) bookEnergy(state, increment.plasticStrain, next);
 	state = next;
 }
 

@@ -14,10 +14,10 @@ template <class Number> struct ConcreteStateOf {
 	PlaneTensorOf<Number> plasticStrain;      ///< ε_p [-]
 	PlaneTensorOf<Number> damage;             ///< Ω [-], positive semi-definite
 	Number                stiffening;         ///< B/B_0 − 1 of the equation of state [-], ≥ 0
-	Number                closure;            ///< How closed its crack was in the last step [-], 0 (open) to 1
-	Number                plasticDissipation; ///< Work of the stress on plastic strain [J/m³]
-	Number                damageDissipation;  ///< Elastic energy released by damage [J/m³]
-	Number                stiffeningEnergy;   ///< Stored energy beyond ½σ:ε_e, from the equation of state and from cracks that close [J/m³]
+	Number                closure;            ///< How closed its crack was in the last step [-], 0 (open) to 1 (closed)
+	Number                plasticDissipation; ///< Work of the stress on flow [J/m³]
+	Number                damageDissipation;  ///< Elastic energy released by damage and by cracks that close or open [J/m³]
+	Number                stiffeningEnergy;   ///< Stored energy beyond ½σ:ε_e, from the equation of state [J/m³]; below zero under pressure
 };
 
 using ConcreteState = ConcreteStateOf<double>;

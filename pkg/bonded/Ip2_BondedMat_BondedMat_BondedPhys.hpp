@@ -1,0 +1,31 @@
+// GPL v2 or later, see LICENSE.
+// From two materials to a contact or a bond.
+#pragma once
+
+#include <pkg/bonded/BondedPhys.hpp>
+
+namespace yade {
+
+class Ip2_BondedMat_BondedMat_BondedPhys : public IPhysFunctor {
+public:
+	virtual ~Ip2_BondedMat_BondedMat_BondedPhys() = default;
+	void go(const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&) override;
+
+	/// Joins pairs of spheres of the current scene; all of them, or none on error.
+	void bond(const std::vector<Vector2i>& pairs);
+
+	FUNCTOR2D(BondedMat, BondedMat);
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_BondedMat_BondedMat_BondedPhys, IPhysFunctor,
+		"Makes :yref:`BondedPhys` of two :yref:`BondedMat`. New interactions are frictional contacts; bonds exist only where :yref:`bond<Ip2_BondedMat_BondedMat_BondedPhys.bond>` "
+		"makes them, so a broken bond never heals.",
+		/*attrs*/, /*ctor*/,
+		.def("bond",&Ip2_BondedMat_BondedMat_BondedPhys::bond,(boost::python::arg("pairs")),
+			"Bond pairs of spheres, given as a list of (id1, id2), at their present distance and orientation, without load. Needs no engines, and bonds need no help from the collider: "
+			"they exist until they break, whatever the gap. ValueError, and nothing bonded, if a pair is not of two different spheres of :yref:`BondedMat` or is bonded already.")
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(Ip2_BondedMat_BondedMat_BondedPhys);
+
+} // namespace yade

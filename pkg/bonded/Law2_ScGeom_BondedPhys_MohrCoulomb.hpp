@@ -1,0 +1,60 @@
+// GPL v2 or later, see LICENSE.
+// The law of bonded particles: elastic bond, Mohr-Coulomb failure, frictional contact.
+#pragma once
+
+#include <pkg/bonded/BondedEnergy.hpp>
+#include <pkg/bonded/BondedPhys.hpp>
+#include <pkg/bonded/BrokenBond.hpp>
+
+#include <mutex>
+
+namespace yade {
+
+class Law2_ScGeom_BondedPhys_MohrCoulomb : public LawFunctor {
+public:
+	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
+	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
+
+	boost::python::list brokenBonds() const;
+	long                brokenCount() const { return long(broken.size()); }
+	boost::python::dict bonds() const;
+	/// Bound on the time step [s], see ddem::stableStep.
+	static Real criticalTimeStep();
+
+	FUNCTOR2D(ScGeom, BondedPhys);
+	// clang-format off
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Law2_ScGeom_BondedPhys_MohrCoulomb, LawFunctor,
+		"Forces and moments of bonds, their failure, and friction of pairs that are not or no longer bonded, after the bonds of ESyS-Particle [Wang2009]_ [Weatherley2014]_.\n\n"
+		"**Bond.** A round beam of radius :math:`R=d_0/2` between the centres, :math:`d_0` apart when it was made, with stiffnesses :math:`EA/d_0` (normal), :math:`GA/d_0` (shear), "
+		":math:`EI/d_0` (bending), :math:`GJ/d_0` (torsion). Loads follow from positions and orientations, not from increments: one element of the geometrically exact beam [Simo1985]_ with one "
+		"integration point. They derive from an energy, so the bond is exactly conservative, for unequal radii and large rotations too. The rest length is :math:`d_0`.\n\n"
+		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the "
+		"tension limit (see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
+		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond that breaks under compression keeps "
+		"its normal force; its tangential force starts from zero.\n\n"
+		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction* (dissipated) [J].\n\n"
+		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as well, its relative rotations are not used.\n\n"
+		"**Saving.** Bonds and the list of broken bonds are saved with the scene. **Limits:** no periodic boundaries for bonds.",
+		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),"Records of broken bonds, in order of step and ids")),
+		/*ctor*/,
+		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
+		.def("brokenCount",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount,"Number of broken bonds.")
+		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), *normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
+		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for its elastic walls: :math:`2/\\omega` of the worst pair, each "
+			"particle's mass shared out between its springs; about a tenth below the exact value. Infinite without springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
+		.staticmethod("criticalTimeStep")
+	);
+	// clang-format on
+
+private:
+	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
+	/// Whether the two still touch.
+	bool applyContact(const Interaction& I, const ddem::ContactLoads& loads);
+	void record(const shared_ptr<BrokenBond>& bond);
+
+	BondedEnergy energy;
+	std::mutex   recording;
+};
+REGISTER_SERIALIZABLE(Law2_ScGeom_BondedPhys_MohrCoulomb);
+
+} // namespace yade

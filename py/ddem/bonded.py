@@ -1,0 +1,303 @@
+# GPL v2 or later, see LICENSE.
+"""Rigid spheres joined by breakable bonds: samples, platens, time step, engines.
+
+Crush a prism of bonded spheres::
+
+	from yade import ddem
+
+	O.materials.append(BondedMat(label="rock"))
+	sample = ddem.bonded.append(ddem.packing.prism(0.01, 0.02, 0.01, rmin=0.8e-3, rmax=2e-3, seed=1), "rock")
+	platens = ddem.bonded.platens(sample, velocity=0.125, ramp=5e-6)
+	O.engines = [
+		ForceResetter(),
+		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+		InteractionLoop(
+			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
+			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
+		),
+		*platens.engines,
+		ViscousBodyDamping(),
+		NewtonIntegrator(damping=0),
+	]
+	O.dt = ddem.bonded.time_step(0.8)
+	O.run(5000, True)
+	print(platens.stress, sample.broken_fraction)
+
+:func:`engines` writes that list. SI units; a platen's force, stress and strain are positive in compression.
+"""
+import math
+
+import numpy as np
+
+from yade import (
+	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedMat, ElasticWallMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
+	NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils)
+
+#: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
+DEFAULT_GAP = 0.0025
+
+_BROKEN = np.dtype([
+	("id1", int), ("id2", int), ("step", int), ("time", float), ("position", float, 3), ("normal", float, 3), ("radius", float), ("mode", "U7"),
+	("normal_stress", float), ("shear_stress", float), ("energy", float)
+])
+
+
+def append(packing, material, gap=None, color=None):
+	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
+
+	:param packing: :class:`packing.Packing`. One layer (:attr:`packing.Packing.flat`) stays in its plane: motion along z and rotation about x and y are blocked.
+	:param material: a :yref:`BondedMat` of O.materials, or its label.
+	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds, or 0.0025 of the largest radius where it has none.
+	:param color: of the spheres, three numbers from 0 to 1.
+	:returns: :class:`BondedSample`
+	:raises ValueError: unknown label, a material of another kind or with bad parameters, a negative gap, nothing to bond. Nothing is appended then.
+	"""
+	material = _material(material)
+	if gap is not None:
+		pairs = packing.neighbours(gap)
+	else:
+		pairs = packing.bonds if packing.bonds is not None else packing.neighbours(DEFAULT_GAP * packing.radii.max())
+	if len(pairs) == 0:
+		raise ValueError(f"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the smallest radius is {packing.radii.min()} m)")
+	spheres = []
+	for centre, radius in zip(packing.centres, packing.radii):
+		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
+		if packing.flat:
+			body.state.blockedDOFs = "zXY"
+		spheres.append(body)
+	ids = np.array(O.bodies.append(spheres), dtype=int)
+	Ip2_BondedMat_BondedMat_BondedPhys().bond([(int(i), int(j)) for i, j in ids[pairs]])
+	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
+
+
+class BondedSample:
+	"""Bonded spheres appended together, and their state as arrays, a row per sphere in the order of :attr:`ids`."""
+
+	def __init__(self, ids, lower, upper, bonds):
+		self.ids = ids  #: body ids of the spheres
+		self.lower, self.upper = np.array(lower, float), np.array(upper, float)  #: corners of the box at the start [m]
+		self.initial_bonds = bonds  #: number of bonds at the start
+
+	@classmethod
+	def from_scene(cls):
+		"""The sample in the current scene, all spheres of BondedMat together; for a scene that was loaded."""
+		bodies = [b for b in O.bodies if b and isinstance(b.shape, Sphere) and isinstance(b.mat, BondedMat)]
+		if not bodies:
+			raise RuntimeError("the scene has no spheres of BondedMat")
+		start = np.array([b.state.refPos for b in bodies])
+		radii = np.array([[b.shape.radius] for b in bodies])
+		sample = cls(np.array([b.id for b in bodies]), (start - radii).min(axis=0), (start + radii).max(axis=0), 0)
+		sample.initial_bonds = len(sample.bonds) + len(sample.broken)
+		return sample
+
+	def __len__(self):
+		return len(self.ids)
+
+	@property
+	def positions(self):
+		"""Centres (n, 3) [m]."""
+		return np.array([O.bodies[int(i)].state.pos for i in self.ids])
+
+	@property
+	def displacements(self):
+		"""Displacements since the start (n, 3) [m]."""
+		return np.array([O.bodies[int(i)].state.displ() for i in self.ids])
+
+	@property
+	def velocities(self):
+		"""Velocities (n, 3) [m/s]."""
+		return np.array([O.bodies[int(i)].state.vel for i in self.ids])
+
+	@property
+	def radii(self):
+		"""Radii (n,) [m]."""
+		return np.array([O.bodies[int(i)].shape.radius for i in self.ids])
+
+	@property
+	def degrees_of_freedom(self):
+		"""Unknowns of the sample: six per sphere, three where it is one layer."""
+		return sum(6 - len(O.bodies[int(i)].state.blockedDOFs) for i in self.ids)
+
+	@property
+	def bonds(self):
+		"""Bonds that hold: body ids (m, 2), in ascending order."""
+		return np.array(law().bonds()["ids"], dtype=int).reshape(-1, 2)
+
+	@property
+	def bond_stresses(self):
+		"""Normal (tension positive) and shear stress (m, 2) [Pa] of the bonds that hold, in the order of :attr:`bonds`."""
+		bonds = law().bonds()
+		return np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)
+
+	@property
+	def broken(self):
+		"""Broken bonds in the order in which they broke, a structured array: id1, id2, step, time [s], position and normal of the crack (3,) [m, -], radius [m],
+		mode ("tension" or "shear"), normal_stress and shear_stress when it broke [Pa], energy it lost [J]."""
+		records = [
+			(b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode, b.normalStress, b.shearStress, b.energy) for b in law().brokenBonds()
+		]
+		return np.array(records, dtype=_BROKEN)
+
+	@property
+	def broken_fraction(self):
+		"""Broken bonds over those at the start [-]."""
+		return law().brokenCount() / self.initial_bonds
+
+	@property
+	def damage(self):
+		"""Broken share of the bonds each sphere had at the start (n,) [-]; 0 for a sphere that had none."""
+		size = int(self.ids.max()) + 1
+		broken = self.broken
+		lost = np.bincount(np.concatenate([broken["id1"], broken["id2"]]), minlength=size)[self.ids]
+		held = np.bincount(self.bonds.ravel(), minlength=size)[self.ids]
+		return lost / np.maximum(lost + held, 1)
+
+	@property
+	def crack_area(self):
+		"""Cross-section of all broken bonds [m²]."""
+		return float(np.pi * (self.broken["radius"]**2).sum())
+
+
+def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True):
+	"""Set elastic walls below and above a sample and drive them towards each other along y.
+
+	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face, and their area is that of the face.
+	:param velocity: speed of each wall [m/s], positive compresses.
+	:param ramp: time over which the speed grows linearly from zero [s].
+	:param stiffness: of the walls, K [Pa]; a sphere of radius r feels the spring pi r K.
+	:param both: True: both walls move; False: the lower one stands still.
+	:returns: :class:`Platens`; put its ``engines`` into O.engines after InteractionLoop.
+	:raises ValueError: velocity zero or not finite, negative ramp, stiffness not positive. Nothing is appended then.
+	"""
+	if not math.isfinite(velocity) or velocity == 0:
+		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
+	if velocity < 0:
+		raise ValueError(f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses")
+	if not (ramp >= 0 and math.isfinite(ramp)):
+		raise ValueError(f"ramp = {ramp} s must not be negative")
+	material = ElasticWallMat(stiffness=stiffness)
+	O.materials.append(material)
+	bottom, top = (utils.wall(float(face), axis=1, sense=sense, material=material) for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1)))
+	bottom, top = O.bodies.append([bottom, top])
+	return Platens(sample, bottom, top, velocity, ramp, both)
+
+
+class Platens:
+	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11). Compression is positive."""
+
+	def __init__(self, sample, bottom, top, velocity, ramp, both):
+		self.sample = sample
+		self.bottom, self.top = bottom, top  #: body ids of the walls
+		self.engines = [RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)]
+		if both:
+			self.engines.append(RampedTranslationEngine(ids=[bottom], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp))
+		width, self.height, depth = sample.upper - sample.lower
+		self.area = float(width * depth)  #: of the loaded face [m²]
+
+	@property
+	def force_top(self):
+		"""Force of the sample on the upper wall [N]."""
+		return O.forces.f(self.top)[1]
+
+	@property
+	def force_bottom(self):
+		"""Force of the sample on the lower wall [N]."""
+		return -O.forces.f(self.bottom)[1]
+
+	@property
+	def stress(self):
+		"""Mean stress of both ends [Pa], eq. 9: (F_top + F_bottom)/2A."""
+		return 0.5 * (self.force_top + self.force_bottom) / self.area
+
+	@property
+	def strain(self):
+		"""Approach of the walls over their first distance [-], eq. 11."""
+		return 1 - (O.bodies[self.top].state.pos[1] - O.bodies[self.bottom].state.pos[1]) / self.height
+
+
+def engines(platens=None, viscosity=0.0, rotational_viscosity=None):
+	"""The engines of a bonded scene in their order; append recorders to the list.
+
+	:param platens: :class:`Platens` whose motion is included.
+	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
+	:param rotational_viscosity: None: equal to viscosity [1/s].
+	"""
+	rotational = viscosity if rotational_viscosity is None else rotational_viscosity
+	damping = [ViscousBodyDamping(viscosity=viscosity, rotationalViscosity=rotational, label="bodyDamping")] if viscosity or rotational else []
+	return [
+		ForceResetter(),
+		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], label="collider"),
+		InteractionLoop(
+			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
+			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
+			label="interactions",
+		),
+		*(platens.engines if platens else []),
+		*damping,
+		NewtonIntegrator(damping=0, label="newton"),
+	]
+
+
+def critical_time_step():
+	"""Rigorous bound on the time step [s] of the bonded spheres of the scene, see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
+	return Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep()
+
+
+def time_step(safety=0.8):
+	"""A stable time step [s]: *safety* times :func:`critical_time_step`. The rest below 1 is for contacts that form later and for accuracy."""
+	if not 0 < safety <= 1:
+		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
+	return safety * critical_time_step()
+
+
+def check():
+	"""Check engines and time step of a bonded scene before a run.
+
+	:raises RuntimeError: an engine is missing or in the wrong place.
+	:raises ValueError: a material was changed to bad parameters, or O.dt is above the critical step.
+	"""
+	names = [type(e).__name__ for e in O.engines]
+	for name, purpose in (
+		("ForceResetter", "forces would add up"), ("InsertionSortCollider", "fragments would pass through each other"), ("InteractionLoop", "bonds would bear no load"),
+		("NewtonIntegrator", "nothing would move")
+	):
+		if name not in names:
+			raise RuntimeError(f"O.engines has no {name}: {purpose}; see ddem.bonded.engines()")
+	order = [names.index(name) for name in ("ForceResetter", "InteractionLoop", "NewtonIntegrator")]
+	if order != sorted(order):
+		raise RuntimeError("wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; see ddem.bonded.engines()")
+	law()
+	for material in O.materials:
+		if isinstance(material, (BondedMat, ElasticWallMat)):
+			material.validate()
+	limit = critical_time_step()
+	if O.dt > limit:
+		raise ValueError(f"O.dt = {O.dt} s is above the critical time step {limit} s of the bonds: the run would blow up; set O.dt = ddem.bonded.time_step(0.8)")
+
+
+def law():
+	"""The :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb` of the scene, which keeps the list of broken bonds.
+
+	:raises RuntimeError: O.engines has no InteractionLoop with one.
+	"""
+	for engine in O.engines:
+		if isinstance(engine, InteractionLoop):
+			for functor in engine.lawDispatcher.functors:
+				if isinstance(functor, Law2_ScGeom_BondedPhys_MohrCoulomb):
+					return functor
+	raise RuntimeError("O.engines has no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb, so bonds bear no load and cannot break; see ddem.bonded.engines()")
+
+
+def _material(material):
+	if isinstance(material, str):
+		labels = [m.label for m in O.materials]
+		if material not in labels:
+			raise ValueError(f"there is no material with label '{material}' in O.materials; it has: {', '.join(filter(None, labels)) or 'none'}")
+		material = O.materials[labels.index(material)]
+	if not isinstance(material, BondedMat):
+		raise ValueError(f"bonded spheres need a BondedMat, not {type(material).__name__}")
+	material.validate()
+	return material

@@ -1,0 +1,276 @@
+# GPL v2 or later, see LICENSE.
+"""Packings of spheres: random prisms and layers of a range of radii, neighbours, CSV files."""
+import contextlib
+import csv
+import ctypes
+import math
+import os
+import sys
+
+import numpy as np
+
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
+
+_TOLERANCE = 5e-6  # overlap and distance to the walls that the packer allows, of the largest radius; the tutorial's 1e-5 mm for 2 mm
+_FLAT = 1e-9  # a packing thinner than this share of a radius is a layer
+
+
+class Packing:
+	"""Spheres in a box, and pairs of them that are to be bonded. Plain numpy arrays; needs no YADE."""
+
+	def __init__(self, centres, radii, lower=None, upper=None, bonds=None):
+		"""
+		:param centres: (n, 3) [m]
+		:param radii: (n,) [m]
+		:param lower, upper: corners of the box [m]; None: that of the spheres
+		:param bonds: (m, 2) pairs of rows, or None when nothing is said about bonds
+		:raises ValueError: shapes that do not fit, numbers that are not finite, radii that are not positive, bonds to unknown spheres
+		"""
+		self.centres = np.array(centres, float).reshape(-1, 3)
+		self.radii = np.array(radii, float).reshape(-1)
+		if len(self.centres) != len(self.radii) or len(self.radii) == 0:
+			raise ValueError(f"a packing needs a radius for each centre: got {len(self.centres)} centres and {len(self.radii)} radii")
+		for row, (centre, radius) in enumerate(zip(self.centres, self.radii)):
+			if not np.isfinite(centre).all():
+				raise ValueError(f"sphere {row}: centre {tuple(centre)} m is not finite")
+			if not (radius > 0 and math.isfinite(radius)):
+				raise ValueError(f"sphere {row}: radius = {radius} m must be positive and finite")
+		around = self.radii[:, None]
+		self.lower = np.array((self.centres - around).min(axis=0) if lower is None else lower, float)  #: corner of the box [m]
+		self.upper = np.array((self.centres + around).max(axis=0) if upper is None else upper, float)  #: corner of the box [m]
+		self.bonds = None if bonds is None else _checked_bonds(bonds, len(self.radii))
+
+	def __len__(self):
+		return len(self.radii)
+
+	@property
+	def size(self):
+		"""Width, height and depth of the box (3,) [m]."""
+		return self.upper - self.lower
+
+	@property
+	def flat(self):
+		"""Whether all centres lie in one plane z = const, so that the spheres are to move in that plane only."""
+		return bool(np.ptp(self.centres[:, 2]) <= _FLAT * self.radii.max())
+
+	@property
+	def solid_fraction(self):
+		"""Volume of the spheres over the volume of the box [-]."""
+		return float((4 / 3 * math.pi * self.radii**3).sum() / self.size.prod())
+
+	def neighbours(self, gap):
+		"""Pairs of spheres whose surfaces are closer than *gap* [m] or overlap: (m, 2) rows, each pair and the list in ascending order."""
+		from scipy.spatial import cKDTree
+		if not gap >= 0:
+			raise ValueError(f"gap = {gap} m must not be negative")
+		# Radii span a decade: searching by classes of radius keeps the candidates few.
+		classes = np.floor(np.log2(self.radii / self.radii.min())).astype(int)
+		members = [np.flatnonzero(classes == c) for c in range(classes.max() + 1)]
+		trees = [cKDTree(self.centres[rows]) if len(rows) else None for rows in members]
+		found = []
+		for a, first in enumerate(members):
+			for b, second in enumerate(members[:a + 1]):
+				if len(first) == 0 or len(second) == 0:
+					continue
+				reach = (self.radii[first].max() + self.radii[second].max() + gap) * (1 + 1e-12)
+				close = trees[a].sparse_distance_matrix(trees[b], reach, output_type="ndarray")
+				i, j = first[close["i"]], second[close["j"]]
+				keep = (close["v"] < self.radii[i] + self.radii[j] + gap) & ((i < j) if a == b else True)
+				found.append(np.sort(np.column_stack([i[keep], j[keep]]), axis=1))
+		pairs = np.concatenate(found)
+		return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+
+	def write(self, particles, bonds=None, length_unit="m"):
+		"""Write ``id,x,y,z,r`` to *particles* and, where given, ``i,j`` to *bonds*, lengths in *length_unit*; all digits are kept."""
+		unit = _unit(length_unit)
+		with open(particles, "w", newline="") as file:
+			writer = csv.writer(file)
+			writer.writerow(["id", "x", "y", "z", "r"])
+			for row, (centre, radius) in enumerate(zip(self.centres, self.radii)):
+				writer.writerow([row] + [repr(float(v / unit)) for v in (*centre, radius)])
+		if bonds is None:
+			return
+		if self.bonds is None:
+			raise ValueError("this packing has no list of bonds to write; set packing.bonds = packing.neighbours(gap)")
+		with open(bonds, "w", newline="") as file:
+			writer = csv.writer(file)
+			writer.writerow(["i", "j"])
+			writer.writerows(self.bonds.tolist())
+
+
+def prism(width, height, depth, rmin, rmax, seed=1, fails=5000):
+	"""Random packing of touching spheres in a prism, x from 0 to *width*, y (the axis of loading) from 0 to *height*, z from -*depth*/2 to *depth*/2.
+
+	GenGeo's insertion packer, which ESyS-Particle's tutorial uses (Place and Mora 2001): seed spheres at random, then spheres that touch four neighbours or walls, until *fails*
+	insertions in a row failed.
+
+	:param rmin, rmax: range of radii [m]
+	:param seed: same seed, same packing (on the same C library)
+	:param fails: more give a denser packing, and take longer
+	:returns: :class:`Packing`
+	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit
+	:raises ImportError: GenGeo is missing
+	"""
+	_check_sizes({"width": width, "height": height, "depth": depth, "rmin": rmin, "rmax": rmax}, rmin, rmax)
+	if 2 * rmax > min(width, height, depth):
+		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; choose a smaller radius, or layer()")
+	spheres = _pack((width, height, depth), rmin, rmax, seed, fails)
+	centre = np.array([0, 0, depth / 2])
+	return Packing(spheres[:, :3] - centre, spheres[:, 3], lower=(0, 0, -depth / 2), upper=(width, height, depth / 2))
+
+
+def layer(width, height, rmin, rmax, seed=1, fails=5000):
+	"""One layer of touching spheres in the plane z = 0, x from 0 to *width*, y from 0 to *height*; its box is 2 *rmax* deep.
+
+	A two-dimensional specimen to set beside deformable triangles: :func:`bonded.append` blocks motion out of its plane. Parameters and errors as for :func:`prism`.
+	"""
+	_check_sizes({"width": width, "height": height, "rmin": rmin, "rmax": rmax}, rmin, rmax)
+	if 2 * rmax > min(width, height):
+		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} m; choose a smaller radius")
+	spheres = _pack((width, height), rmin, rmax, seed, fails)
+	spheres[:, 2] = 0
+	return Packing(spheres[:, :3], spheres[:, 3], lower=(0, 0, -rmax), upper=(width, height, rmax))
+
+
+def read(particles, bonds=None, length_unit="m"):
+	"""Packing from a CSV file with the columns id, x, y, z, r (in any order, others are ignored) and, where given, bonds from one with i, j, which are such ids.
+
+	:param length_unit: of the file: "m", "cm", "mm" or "um"
+	:raises ValueError: naming file, line and what is wrong there
+	"""
+	unit = _unit(length_unit)
+	rows, ids = [], {}
+	for place, record in _records(particles, ("id", "x", "y", "z", "r")):
+		number = _number(place, "id", record["id"], int)
+		if number in ids:
+			raise ValueError(f"{place}: id {number} appears twice")
+		ids[number] = len(rows)
+		values = [_number(place, name, record[name], float) for name in "xyzr"]
+		if values[3] <= 0:
+			raise ValueError(f"{place}: radius r = {values[3]} {length_unit} must be positive")
+		rows.append(values)
+	if not rows:
+		raise ValueError(f"{particles}: no spheres in it")
+	pairs = None
+	if bonds is not None:
+		pairs = []
+		for place, record in _records(bonds, ("i", "j")):
+			pair = [_number(place, name, record[name], int) for name in "ij"]
+			for number in pair:
+				if number not in ids:
+					raise ValueError(f"{place}: there is no sphere with id {number} in {particles}")
+			if pair[0] == pair[1]:
+				raise ValueError(f"{place}: sphere {pair[0]} is bonded to itself")
+			pairs.append([ids[number] for number in pair])
+		pairs = np.array(pairs, dtype=int).reshape(-1, 2)
+	data = np.array(rows) * unit
+	return Packing(data[:, :3], data[:, 3], bonds=pairs)
+
+
+def _check_sizes(sizes, rmin, rmax):
+	for name, value in sizes.items():
+		if not (value > 0 and math.isfinite(value)):
+			raise ValueError(f"{name} = {value} m must be positive and finite")
+	if rmin > rmax:
+		raise ValueError(f"rmin = {rmin} m is above rmax = {rmax} m")
+
+
+def _checked_bonds(bonds, count):
+	bonds = np.array(bonds, dtype=int).reshape(-1, 2)
+	if len(bonds) == 0:
+		return bonds
+	if bonds.min() < 0 or bonds.max() >= count:
+		bad = bonds[((bonds < 0) | (bonds >= count)).any(axis=1)][0]
+		raise ValueError(f"bond {tuple(bad)} names a sphere that does not exist: there are {count}")
+	if (bonds[:, 0] == bonds[:, 1]).any():
+		raise ValueError(f"sphere {bonds[bonds[:, 0] == bonds[:, 1]][0, 0]} is bonded to itself")
+	ordered = np.unique(np.sort(bonds, axis=1), axis=0)
+	if len(ordered) != len(bonds):
+		pairs, counts = np.unique(np.sort(bonds, axis=1), axis=0, return_counts=True)
+		raise ValueError(f"bond {tuple(pairs[counts > 1][0])} is listed twice")
+	return ordered
+
+
+def _pack(size, rmin, rmax, seed, fails):
+	"""Rows x, y, z, r of a packing in a box at the origin, in the order in which GenGeo lists them."""
+	try:
+		import gengeo
+	except ImportError as error:
+		raise ImportError("sphere packings need GenGeo: install Debian's package python3-gengeo, or read a packing from a file with packing.read()") from error
+	scaled = [s / rmax for s in size]  # GenGeo's own constants suit radii of order one
+	with _quiet():
+		packer, box, table = _packer_in_plane(gengeo, *scaled, rmin / rmax, fails) if len(size) == 2 else _packer_in_space(gengeo, scaled, rmin / rmax, fails)
+		# GenGeo draws from the C library's rand(); its own seeding knows only "fixed" and "by the clock".
+		ctypes.CDLL(None).srand(ctypes.c_uint(int(seed)))
+		packer.generatePacking(volume=box, ntable=table, groupID=0, tag=0)
+	spheres = [(s.Centre().X(), s.Centre().Y(), s.Centre().Z(), s.Radius()) for s in table.getSphereListFromGroup(0)]
+	return np.array(spheres).reshape(-1, 4) * rmax
+
+
+def _packer_in_plane(gengeo, width, height, rmin, fails):
+	corners = [gengeo.Vector3(*xy, 0) for xy in ((0, 0), (width, 0), (width, height), (0, height))]
+	box, table = gengeo.BoxWithLines2D(corners[0], corners[2]), gengeo.MNTable2D(corners[0], corners[2], 2.2, 1)
+	for here, there in zip(corners, corners[1:] + corners[:1]):
+		box.addLine(gengeo.Line2D(there, here))
+	return gengeo.InsertGenerator2D(rmin, 1.0, fails, 1000, _TOLERANCE), box, table
+
+
+def _packer_in_space(gengeo, size, rmin, fails):
+	lower, upper = gengeo.Vector3(0, 0, 0), gengeo.Vector3(*size)
+	box, table = gengeo.BoxWithPlanes3D(lower, upper), gengeo.MNTable3D(lower, upper, 2.2, 1)
+	for normal in np.eye(3).tolist():
+		box.addPlane(gengeo.Plane(lower, gengeo.Vector3(*normal)))
+		box.addPlane(gengeo.Plane(upper, gengeo.Vector3(*(-n for n in normal))))
+	packer = gengeo.InsertGenerator3D(rmin, 1.0, fails, 1000, _TOLERANCE)
+	packer.setOldSeeding(False)  # has no default of its own
+	return packer, box, table
+
+
+@contextlib.contextmanager
+def _quiet():
+	"""GenGeo reports its progress on the standard output of C++."""
+	libc = ctypes.CDLL(None)
+	sys.stdout.flush()
+	libc.fflush(None)
+	kept = os.dup(1)
+	try:
+		with open(os.devnull, "w") as nowhere:
+			os.dup2(nowhere.fileno(), 1)
+			yield
+	finally:
+		libc.fflush(None)
+		os.dup2(kept, 1)
+		os.close(kept)
+
+
+def _unit(name):
+	if name not in UNITS:
+		raise ValueError(f"length_unit = '{name}' is unknown; use one of {', '.join(UNITS)}")
+	return UNITS[name]
+
+
+def _records(path, columns):
+	"""Place ("file, line n") and values by column of every line of a CSV file."""
+	with open(path, newline="") as file:
+		reader = csv.reader(file)
+		header = [name.strip() for name in next(reader, [])]
+		missing = [name for name in columns if name not in header]
+		if missing:
+			raise ValueError(f"{path}, line 1: column {missing[0]} is missing; the header must name {', '.join(columns)}")
+		for fields in reader:
+			place = f"{path}, line {reader.line_num}"
+			if not fields:
+				continue
+			if len(fields) != len(header):
+				raise ValueError(f"{place}: {len(fields)} fields where the header has {len(header)}")
+			yield place, dict(zip(header, fields))
+
+
+def _number(place, name, text, kind):
+	try:
+		value = kind(text)
+	except ValueError:
+		raise ValueError(f"{place}: {name} = '{text.strip()}' is not {'a whole' if kind is int else 'a'} number") from None
+	if not math.isfinite(value):
+		raise ValueError(f"{place}: {name} = {text.strip()} is not finite")
+	return value

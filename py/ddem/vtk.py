@@ -1,0 +1,221 @@
+# GPL v2 or later, see LICENSE.
+"""ParaView files of a running scene: a .vtu file an instant, and a .pvd file that lists them with their times.
+
+A recorder is called whenever a file is wanted, for instance by a PyRunner::
+
+	record = ddem.vtk.Recorder(block, "out/block")
+	O.engines += [PyRunner(command="record()", virtPeriod=1e-5)]
+
+Deformable triangles give one series of files; bonded spheres give three: spheres, bonds and broken bonds. Open the .pvd file in ParaView.
+"""
+import glob
+import os
+import xml.etree.ElementTree as ET
+
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, VTK_VERTEX, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+
+from .snapshots import rotations
+
+#: order of the components of a symmetric tensor in VTK
+TENSOR = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
+#: values of the array "state" of a bond
+HOLDS, TENSION, SHEAR = 0, 1, 2
+
+
+class Recorder:
+	"""Writes the state of a sample each time it is called.
+
+	:param sample: a Block of deformable triangles (:func:`yade.ddem.append`) or a sample of bonded spheres (:func:`yade.ddem.bonded.append`)
+	:param name: path and beginning of the files' names: "out/block" gives out/block.pvd and out/block-0000.vtu, out/block-0001.vtu … Missing folders are made;
+		files of an earlier recording of that name are removed.
+	:param sub_elements: of triangles: three cells a triangle, each with its own stress and damage, instead of one with their mean
+
+	=================  ==========================================================================================================================
+	triangles          stress [Pa], strain, plasticStrain (symmetric tensors), damage, rotation [rad], region, id; nodes: displacement [m], velocity [m/s]
+	spheres            radius [m], displacement [m], velocity [m/s], rotation (vector) [rad], damage (share of its bonds that are broken), id
+	bonds              state (0 holds, 1 broken in tension, 2 broken in shear), radius [m], axialForce (tension positive), shearForce [N] (NaN where
+	                   broken), normalStress, shearStress [Pa] (those of the moment of failure where broken)
+	broken bonds       time [s], mode (as state), normal of the crack, radius [m], normalStress, shearStress [Pa], energy lost [J]
+	=================  ==========================================================================================================================
+	"""
+
+	def __init__(self, sample, name, sub_elements=False):
+		self._parts = _parts(sample, sub_elements)
+		self._collections = {suffix: _Collection(name + suffix) for suffix in self._parts}
+
+	def __call__(self):
+		"""Write the present state."""
+		from yade import O
+		for suffix, grid in self._parts.items():
+			self._collections[suffix].add(grid(), O.time)
+
+	@property
+	def files(self):
+		"""The .pvd files."""
+		return [collection.path for collection in self._collections.values()]
+
+
+def grid(points, cells, kind, point_data=None, cell_data=None):
+	"""A vtkUnstructuredGrid from arrays.
+
+	:param points: (n, 2) or (n, 3)
+	:param cells: (m, k) rows of points; (m,) for VTK_VERTEX
+	:param kind: VTK_TRIANGLE, VTK_LINE or VTK_VERTEX
+	:param point_data, cell_data: arrays by name, a row per point or cell; rows of two numbers become vectors in the plane, rows of six are symmetric tensors
+	"""
+	cells = np.asarray(cells, dtype=np.int64)
+	cells = cells[:, None] if cells.ndim == 1 else cells
+	result = vtkUnstructuredGrid()
+	places = vtkPoints()
+	places.SetData(_array("points", np.asarray(points, float)))
+	result.SetPoints(places)
+	table = vtkCellArray()
+	corners = np.full((len(cells), cells.shape[1] + 1), cells.shape[1], dtype=np.int64)
+	corners[:, 1:] = cells
+	table.ImportLegacyFormat(numpy_to_vtkIdTypeArray(corners.ravel(), deep=True))
+	result.SetCells(kind, table)
+	for data, arrays, rows in ((result.GetPointData(), point_data, len(points)), (result.GetCellData(), cell_data, len(cells))):
+		for name, values in (arrays or {}).items():
+			if len(values) != rows:
+				raise ValueError(f"array '{name}' has {len(values)} rows where the grid has {rows}")
+			data.AddArray(_array(name, np.asarray(values)))
+	return result
+
+
+def write(data, path, time=None):
+	"""Write a vtkUnstructuredGrid to a .vtu file, compressed; *time* [s] is stored as VTK's TimeValue."""
+	if time is not None:
+		data.GetFieldData().AddArray(_array("TimeValue", np.array([float(time)])))
+	writer = vtkXMLUnstructuredGridWriter()
+	writer.SetFileName(path)
+	writer.SetInputData(data)
+	writer.SetDataModeToAppended()
+	writer.EncodeAppendedDataOff()
+	if writer.Write() != 1:
+		raise OSError(f"VTK could not write {path}")
+
+
+class _Collection:
+	"""A .pvd file and the .vtu files beside it."""
+
+	def __init__(self, name):
+		self.name, self.path = name, name + ".pvd"
+		self.tree = ET.ElementTree(ET.Element("VTKFile", type="Collection", version="0.1"))
+		self.list = ET.SubElement(self.tree.getroot(), "Collection")
+		os.makedirs(os.path.dirname(os.path.abspath(name)), exist_ok=True)
+		for old in glob.glob(glob.escape(name) + "-[0-9]*.vtu") + glob.glob(glob.escape(self.path)):
+			os.remove(old)
+
+	def add(self, data, time):
+		path = f"{self.name}-{len(self.list):04d}.vtu"
+		write(data, path, time)
+		ET.SubElement(self.list, "DataSet", timestep=repr(float(time)), part="0", file=os.path.basename(path))
+		ET.indent(self.tree)
+		self.tree.write(self.path + ".new", encoding="utf-8", xml_declaration=True)
+		os.replace(self.path + ".new", self.path)  # complete at any moment, so ParaView can follow a run
+
+
+def _parts(sample, sub_elements):
+	from .block import Block
+	if isinstance(sample, Block):
+		return {"": lambda: _triangles(sample, sub_elements)}
+	return {"-spheres": lambda: _spheres(sample), "-bonds": lambda: _bonds(sample), "-broken": lambda: _broken(sample)}
+
+
+def _triangles(block, sub_elements):
+	nodes, triangles = block.positions, block.mesh.triangles
+	corners, cells = nodes, triangles
+	points = {"displacement": block.displacements, "velocity": block.velocities}
+	tensors = {"stress": block.stress, "strain": block.strain, "plasticStrain": block.plastic_strain, "damage": block.sub_element_damage}
+	single = {"rotation": block.rotation, "region": block.mesh.regions, "id": block.triangle_ids}
+	if sub_elements:
+		centres = len(nodes) + np.arange(len(triangles))
+		cores = _cores(block, "corePosition")
+		corners = np.vstack([nodes, cores])
+		points = {
+			"displacement": np.vstack([block.displacements, cores - block.reference_positions[triangles].mean(axis=1)]),
+			"velocity": np.vstack([block.velocities, _cores(block, "coreVelocity")]),
+		}
+		cells = np.stack([np.repeat(centres, 3), triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()], axis=1)
+		values = {name: array.reshape(len(cells), -1) for name, array in tensors.items()}
+		single = {name: np.repeat(array, 3) for name, array in single.items()}
+	else:
+		values = {name: array.mean(axis=1) for name, array in tensors.items()}
+	for name in ("stress", "strain", "plasticStrain"):
+		values[name] = np.pad(values[name], ((0, 0), (0, 2)))
+	values["damage"] = values["damage"].ravel()
+	return grid(corners, cells, VTK_TRIANGLE, points, {**values, **single})
+
+
+def _spheres(sample):
+	arrays = {
+		"radius": sample.radii, "displacement": sample.displacements, "velocity": sample.velocities, "rotation": rotations(sample), "damage": sample.damage,
+		"id": sample.ids
+	}
+	return grid(sample.positions, np.arange(len(sample)), VTK_VERTEX, arrays)
+
+
+def _bonds(sample):
+	from .bonded import law
+	holding, broken, positions = law().bonds(), sample.broken, sample.positions
+	pairs = np.array(holding["ids"], dtype=int).reshape(-1, 2)
+	forces = _bond_forces(pairs)
+	lost = np.full((len(broken), 2), np.nan)
+	pairs = np.vstack([pairs, np.column_stack([broken["id1"], broken["id2"]])])
+	row = np.zeros(int(sample.ids.max()) + 1, dtype=int)
+	row[sample.ids] = np.arange(len(sample))
+	arrays = {"state": np.concatenate([np.full(len(forces), HOLDS), _modes(broken)])}
+	for name, column in (("normalStress", "normal_stress"), ("shearStress", "shear_stress"), ("radius", "radius")):
+		arrays[name] = np.concatenate([holding[name], broken[column]])
+	arrays["axialForce"], arrays["shearForce"] = np.vstack([forces, lost]).T
+	return grid(positions, row[pairs], VTK_LINE, None, arrays)
+
+
+def _bond_forces(pairs):
+	"""Axial force, tension positive, and size of the shear force of bonds (m, 2) [N]."""
+	from yade import O
+	result = np.empty((len(pairs), 2))
+	for place, (i, j) in zip(result, pairs.tolist()):
+		phys = O.interactions[i, j].phys
+		axis = O.bodies[j].state.pos - O.bodies[i].state.pos
+		place[:] = -phys.normalForce.dot(axis.normalized()), phys.shearForce.norm()
+	return result
+
+
+def _broken(sample):
+	broken = sample.broken
+	arrays = {name: broken[name] for name in ("time", "normal", "radius", "energy")}
+	arrays["mode"] = _modes(broken)
+	arrays["normalStress"], arrays["shearStress"] = broken["normal_stress"], broken["shear_stress"]
+	return grid(broken["position"], np.arange(len(broken)), VTK_VERTEX, arrays)
+
+
+def _modes(broken):
+	return np.where(broken["mode"] == "tension", TENSION, SHEAR)
+
+
+def _cores(block, name):
+	from .block import _engine
+	engine = _engine()
+	first = np.searchsorted(engine.values("triangleIds"), block.triangle_ids[0])
+	return engine.array(name)[first:first + len(block.triangle_ids)]
+
+
+def _in_space(values):
+	return np.pad(values, ((0, 0), (0, 1))) if values.ndim == 2 and values.shape[1] == 2 else values
+
+
+def _array(name, values):
+	values = _in_space(values)
+	if values.dtype.kind in "iub":
+		values = values.astype(np.int32)
+	array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+	array.SetName(name)
+	if values.ndim == 2 and values.shape[1] == len(TENSOR):
+		for index, component in enumerate(TENSOR):
+			array.SetComponentName(index, component)
+	return array

@@ -1,0 +1,275 @@
+# GPL v2 or later, see LICENSE.
+"""Crush the same block of concrete twice: once made of rigid bonded spheres, once of deformable triangles.
+
+Run:      scripts/ddem run scripts/ucs_compare.py                     (about a minute; --preset full: about ten)
+          scripts/ddem run scripts/ucs_compare.py --help              (all options)
+Writes:   a table here, and out/ucs_compare/report.html with pictures, summary.json, a CSV of each test, and ParaView files.
+
+        v |            A block 10 cm wide, 20 cm tall and 2 cm thick stands between two platens that move towards each other. The ends
+     ===========       cannot slide (rough platens), nothing moves out of the plane (plane strain), as in Zubelewicz (2018), section 4.3.
+     |         |       Triangles are plane strain by nature. The spheres fill a prism as deep as the triangles are thick, whose front and
+     |         |       back layers may not move out of plane: 2 cm is two diameters of the largest sphere or more, so that bonds form a
+     |         |       network in space, and thin enough for cracks to run through it from front to back.
+     |         |       Stress is (F_top + F_bottom)/2A, strain the approach of the platens over the height (eqs. 9-11 of the tests of
+     ===========       rigid particles after Weatherley et al.); strength is the largest stress, Young's modulus the slope from 20 % to 60 % of it.
+        v ^
+
+Expect:   both models peak near CALIBRATED MPa at about 0.2 % strain. The triangles damage along inclined bands and leave cones below the platens; the
+          bonded spheres break more suddenly. The triangles have Zubelewicz's Tables 1 and 2 untouched; the bonds were matched to them (see BONDS).
+"""
+import argparse
+import math
+import os
+import shlex
+import sys
+import tempfile
+import time
+
+import yade.config
+from yade import ddem
+from yade.ddem import ucs, vtk
+from yade.ddem.report import Report
+
+WIDTH, HEIGHT = 0.10, 0.20  # [m]
+DENSITY = 2400  # of the concrete [kg/m³]
+REBAR = ddem.mesh.box(0.043, 0.093, 0.057, 0.107)  # 1.4 cm x 1.4 cm in the middle [m]
+
+# Bond parameters that make the rigid block the same concrete. Young's modulus scales the stiffness, cohesion the strength; three rounds of correcting both in
+# proportion to what was missed, quick preset, seed 1. CALIBRATION
+BONDS = {"young": 112e9, "poisson": 0.2, "cohesion": 98e6, "bondFrictionAngle": math.radians(45), "frictionStatic": 0.6, "frictionDynamic": 0.4}
+
+PRESETS = {
+	"quick": {"size": 0.004, "radii": (0.002, 0.005), "velocity": 1.0, "fails": 1000},
+	"full": {"size": 0.002, "radii": (0.001, 0.0025), "velocity": 0.5, "fails": 1000},
+}
+
+
+def main():
+	options = read_options()
+	models = {"rigid": rigid_test, "deformable": deformable_test}
+	runs = [crush(models[name], options) for name in options.models]
+
+	report = Report(
+		runs, options.out, title(runs), settings=settings(options), command=command(), options=plain(options), versions=versions(), notes=notes(options),
+		pictures=options.pictures, pdf=options.pdf
+	)
+	page = report.write()
+	print(f"\n{report.table()}\n\nReport: {page}")
+
+
+# ---- the two tests ----
+
+
+def rigid_test(options):
+	"""Rigid spheres, bonded; of a density that gives the block that of the concrete."""
+	packing = ddem.packing.prism(WIDTH, HEIGHT, options.depth, *options.radii, seed=options.seed, fails=options.fails)
+	O.materials.append(BondedMat(label="bonds", density=DENSITY / packing.solid_fraction, **BONDS))
+	sample = ddem.bonded.append(packing, "bonds")
+	platens = ddem.bonded.platens(sample, options.velocity, options.ramp, stiffness=10 * BONDS["young"], both=options.drive == "both")
+	hold(sample, packing, axis=2, dof="z")
+	if options.ends == "rough":
+		hold(sample, packing, axis=1, dof="x")
+	O.engines = ddem.bonded.engines(platens)
+	critical = ddem.bonded.critical_time_step()
+	O.dt = options.safety * critical
+	return platens, critical, [
+		("spheres", f"{len(sample):,d}", f"radii {1e3 * options.radii[0]:g} to {1e3 * options.radii[1]:g} mm, {100 * packing.solid_fraction:.1f} % of the block's volume"),
+		("bonds", f"{sample.initial_bonds:,d}", f"{2 * sample.initial_bonds / len(sample):.1f} a sphere"),
+		*material_rows(O.materials["bonds"], BONDED_ROWS),
+	]
+
+
+def deformable_test(options):
+	"""Deformable triangles of Zubelewicz's concrete, fracture energy random in each."""
+	regions = {"steel": REBAR} if options.rebar else {}
+	O.materials.append(ConcreteDamageMat(label="concrete", density=DENSITY))
+	O.materials.append(DeformableElastMat(label="steel", bulk=151e9, shear=81e9, density=8030))
+	extra = {"seed": options.seed} if options.mesh == "unstructured" else {}
+	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, options.size, pattern=options.mesh, regions=regions, **extra)
+	block = ddem.append(mesh, {"": "concrete", **dict.fromkeys(regions, "steel")}, seed=options.seed, thickness=options.depth)
+	platens = ddem.platens(block, options.velocity, options.ramp, lateral="fixed" if options.ends == "rough" else "free", both=options.drive == "both")
+	O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=options.rotation, label="triangles")]
+	critical = O.engines[-1].criticalTimeStep()
+	O.dt = options.safety * critical
+	return platens, critical, [
+		("triangles", f"{len(mesh.triangles):,d}", f"{options.mesh} mesh of size {1e3 * options.size:g} mm, {len(mesh.nodes):,d} nodes, smallest angle {mesh.angles.min():.0f}°"),
+		("rotation", options.rotation, "treatment of the particles' rotation"),
+		*material_rows(O.materials["concrete"], CONCRETE_ROWS),
+		("spread of G_f", "0.8 G_f", "standard deviation of the triangles' fracture energies, drawn from a normal distribution, not below 0.2 G_f"),
+	]
+
+
+def hold(sample, packing, axis, dof):
+	"""Hold the spheres that touch the two faces across *axis* in one direction."""
+	for face in (packing.lower[axis], packing.upper[axis]):
+		for row in (abs(packing.centres[:, axis] - face) < 1.001 * packing.radii).nonzero()[0]:
+			state = O.bodies[int(sample.ids[row])].state
+			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | {dof}))
+
+
+def crush(prepare, options):
+	"""Set up one test, run it, and return its record."""
+	O.reset()
+	start = time.perf_counter()
+	platens, critical, parameters = prepare(options)
+	closing = options.velocity * (2 if options.drive == "both" else 1)
+	duration = options.strain * HEIGHT / closing + 0.5 * options.ramp
+	name = "deformable" if prepare is deformable_test else "rigid"
+	recorders = [vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", name))] if options.vtk else []
+	test = ucs.CompressionTest(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical)
+	setup = time.perf_counter() - start
+	run = test.run(progress=options.progress)
+	run.setup, run.parameters = setup, [*parameters, ("time step", f"{1e6 * run.dt:.3g} µs", f"{options.safety:g} of the critical one")]
+	return run
+
+
+# ---- options ----
+
+
+def read_options():
+	"""Options from the command line, the preset's where not given; complains about them before anything runs."""
+	first = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+	first.add_argument("--preset", default="quick")
+	preset = PRESETS.get(first.parse_known_args()[0].preset, PRESETS["quick"])
+
+	parser = argparse.ArgumentParser(
+		prog="scripts/ddem run scripts/ucs_compare.py", usage="%(prog)s [options]", description="Crush the same block of concrete twice, made of rigid bonded spheres and of deformable triangles, and report.",
+		formatter_class=argparse.ArgumentDefaultsHelpFormatter, allow_abbrev=False,
+		epilog="Lengths in m, times in s, speeds in m/s. The same options and seed give the same result, bit by bit: the triangles on any number of threads, the "
+		"spheres on one thread (the launcher's default; scripts/ddem run --threads N for more)."
+	)
+	run = parser.add_argument_group("run")
+	run.add_argument("--preset", choices=PRESETS, default="quick", help="sizes and speed: quick takes about a minute on two cores, full about ten")
+	run.add_argument("--models", type=models, default="rigid,deformable", metavar="LIST", help="which models to crush, in this order: rigid, deformable or both")
+	run.add_argument("--seed", type=int, default=1, help="draws the packing, the irregular mesh and the fracture energies")
+	run.add_argument("--out", default=os.path.join("out", "ucs_compare"), metavar="DIR", help="folder for all files, made when missing; older files are replaced")
+	test = parser.add_argument_group("test")
+	test.add_argument("--velocity", type=positive, default=preset["velocity"], metavar="M/S", help="speed of each platen [m/s]; Zubelewicz's 4.3 has 10 m/s at the top only")
+	test.add_argument("--ramp", type=not_negative, default=1e-4, metavar="S", help="time over which the platens reach their speed [s]; 0: they hit the block")
+	test.add_argument("--drive", choices=("both", "top"), default="both", help="which platens move")
+	test.add_argument("--ends", choices=("rough", "smooth"), default="rough", help="rough platens hold the ends laterally, smooth ones let them slide")
+	test.add_argument("--strain", type=positive, default=0.01, metavar="E", help="largest strain [-], at full speed; the test ends there at the latest")
+	test.add_argument("--stop", type=share, default=0.2, metavar="PART", help="the test ends when the stress stays below this part of the peak; 0: never")
+	test.add_argument("--safety", type=share, default=0.8, metavar="PART", help="time step, as a part of the critical one")
+	sample = parser.add_argument_group("sample")
+	sample.add_argument("--size", type=positive, default=preset["size"], metavar="M", help="size of the triangles' mesh [m]")
+	sample.add_argument("--mesh", choices=ddem.mesh.generate.PATTERNS, default="unstructured", help="pattern of the mesh; Zubelewicz's is crossed, of 0.01 m")
+	sample.add_argument("--rotation", choices=("cosserat", "corotational", "none"), default="cosserat", help="how triangles follow rotation: with a rotation of their own "
+		"and a stiffness against it, by the frame of their deformation, or not at all (small rotations)")
+	sample.add_argument("--rebar", action="store_true", help="a steel rebar of 1.4 cm x 1.4 cm in the middle of the deformable block; the bonded block has none")
+	sample.add_argument("--radii", type=positive, nargs=2, default=preset["radii"], metavar=("MIN", "MAX"), help="range of the spheres' radii [m]")
+	sample.add_argument("--depth", type=positive, default=0.02, metavar="M", help="thickness of the block out of plane [m], at least twice the largest diameter")
+	sample.add_argument("--fails", type=int, default=preset["fails"], metavar="N", help="the packing of spheres is finished when so many in a row found no place")
+	output = parser.add_argument_group("output")
+	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
+	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
+	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
+	output.add_argument("--progress", action=argparse.BooleanOptionalAction, default=True, help="progress bars, where the terminal can show them")
+	options = parser.parse_args()
+
+	smallest, largest = options.radii
+	if smallest > largest:
+		parser.error(f"argument --radii: the smallest radius, {smallest:g} m, is above the largest, {largest:g} m")
+	if options.depth < 4 * largest:
+		parser.error(f"argument --depth: {options.depth:g} m is less than two diameters of the largest sphere, {4 * largest:g} m; choose smaller --radii or a deeper block")
+	if options.size > WIDTH / 4:
+		parser.error(f"argument --size: {options.size:g} m is more than a quarter of the block's width of {WIDTH:g} m")
+	try:
+		os.makedirs(options.out, exist_ok=True)
+		tempfile.TemporaryFile(dir=options.out).close()
+	except OSError as error:
+		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	return options
+
+
+def positive(text):
+	value = float(text)
+	if not (value > 0 and math.isfinite(value)):
+		raise argparse.ArgumentTypeError(f"{text} must be positive")
+	return value
+
+
+def not_negative(text):
+	value = float(text)
+	if not (value >= 0 and math.isfinite(value)):
+		raise argparse.ArgumentTypeError(f"{text} must not be negative")
+	return value
+
+
+def share(text):
+	value = float(text)
+	if not 0 <= value < 1:
+		raise argparse.ArgumentTypeError(f"{text} must be a part, from 0 to below 1")
+	return value
+
+
+def models(text):
+	names = text.split(",")
+	if not names or set(names) - {"rigid", "deformable"} or len(set(names)) < len(names):
+		raise argparse.ArgumentTypeError(f"'{text}' must be rigid, deformable, or both with a comma between")
+	return names
+
+
+# ---- what the report says about the test ----
+
+CONCRETE_ROWS = (
+	("bulk", "B", "GPa", 1e9, "bulk modulus"), ("shear", "μ", "GPa", 1e9, "shear modulus"), ("density", "ρ", "kg/m³", 1, "density"),
+	("strength", "σ_p0", "MPa", 1e6, "strength in the flow rule"), ("fractureEnergy", "G_f", "kJ/m³", 1e3, "mean fracture energy"),
+	("rotationStiffness", "β_φ", "", 1, "stiffness against rotation")
+)
+BONDED_ROWS = (
+	("young", "E", "GPa", 1e9, "Young's modulus of the bonds"), ("poisson", "ν", "", 1, "Poisson's ratio of the bonds"),
+	("cohesion", "C", "MPa", 1e6, "shear strength of the bonds without normal stress"), ("bondFrictionAngle", "φ", "°", math.radians(1), "friction angle of the bonds"),
+	("frictionStatic", "μ_s", "", 1, "friction of contacts until the first slip"), ("frictionDynamic", "μ_d", "", 1, "friction of contacts after it"),
+	("density", "ρ", "kg/m³", 1, "density of the spheres: the block as a whole has that of the concrete")
+)
+
+
+def material_rows(material, rows):
+	return [(symbol, f"{getattr(material, name) / factor:.4g} {unit}".strip(), meaning) for name, symbol, unit, factor, meaning in rows]
+
+
+def title(runs):
+	return "Uniaxial compression of concrete: " + " against ".join(run.title for run in runs)
+
+
+def settings(options):
+	return [
+		("block", f"{1e3 * WIDTH:g} × {1e3 * HEIGHT:g} × {1e3 * options.depth:g} mm", "width, height, thickness; plane strain"),
+		("platens", f"{options.velocity:g} m/s", f"speed of {'each platen' if options.drive == 'both' else 'the top platen, the bottom stands'}, reached after {1e6 * options.ramp:g} µs"),
+		("ends", options.ends, "rough: held laterally; smooth: free to slide"),
+		("end of the test", f"{100 * options.stop:g} % of the peak", f"or a strain of {100 * options.strain:g} %"),
+		("seed", options.seed, "of packing, mesh and fracture energies"),
+	]
+
+
+def notes(options):
+	closing = options.velocity * (2 if options.drive == "both" else 1)
+	waves = 5191  # plane-strain compression wave of the concrete, sqrt((B + 4/3 mu)/rho) [m/s]
+	return [
+		f"Rate: the platens approach at {closing:g} m/s, a strain rate of {closing / HEIGHT:g} /s at full speed. A compression wave needs {1e6 * HEIGHT / waves:.0f} µs "
+		f"through the block, in which the strain grows by {100 * closing / waves:.3f} %; the forces on the two platens show how near to equilibrium the test is. Zubelewicz's 10 m/s "
+		"without a ramp is an impact: the first wave alone carries more than the strength.",
+		"Bonds: CALIBRATION_NOTE",
+	]
+
+
+def command():
+	threads = ["--threads", str(O.numThreads)] if O.numThreads > 1 else []
+	script = os.path.relpath(sys.argv[0])
+	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", *threads, script, *sys.argv[1:]])
+
+
+def plain(options):
+	return {name: list(value) if isinstance(value, tuple) else value for name, value in vars(options).items()}
+
+
+def versions():
+	import matplotlib
+	import numpy
+	from vtkmodules.vtkCommonCore import vtkVersion
+	return {"YADE": yade.config.version, "Python": sys.version.split()[0], "NumPy": numpy.__version__, "VTK": vtkVersion.GetVTKVersion(), "Matplotlib": matplotlib.__version__}
+
+
+if __name__ == "__main__":
+	main()

@@ -1,0 +1,126 @@
+# GPL v2 or later, see LICENSE.
+# Sphere packings: what a random prism must be, neighbours, files and their errors.
+import itertools
+
+import numpy as np
+import pytest
+
+from yade.ddem import packing
+
+
+@pytest.fixture(scope="module")
+def prism():
+	return packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=4, fails=300)
+
+
+def test_prism_lies_in_its_box_with_radii_of_its_range(prism):
+	around = prism.radii[:, None]
+	assert (prism.centres - around >= prism.lower - 1e-7).all() and (prism.centres + around <= prism.upper + 1e-7).all()
+	assert prism.radii.min() >= 1e-3 and prism.radii.max() <= 2e-3 * (1 + 1e-12)
+	assert prism.size == pytest.approx([0.01, 0.02, 0.01])
+	assert 0.4 < prism.solid_fraction < 0.74  # between loose and densest packing of equal spheres
+	assert not prism.flat
+
+
+def test_spheres_touch_but_do_not_overlap(prism):
+	distances = np.linalg.norm(prism.centres[:, None] - prism.centres[None], axis=2)
+	gaps = (distances - prism.radii[:, None] - prism.radii[None])[np.triu_indices(len(prism), 1)]
+	assert gaps.min() > -5e-6 * 2e-3 * 1.01
+	assert (gaps < 5e-6).sum() > 1.5 * len(prism)
+
+
+def test_same_seed_same_packing():
+	first, second, other = (packing.prism(6e-3, 8e-3, 6e-3, 1e-3, 2e-3, seed=s, fails=100) for s in (7, 7, 8))
+	assert np.array_equal(first.centres, second.centres) and np.array_equal(first.radii, second.radii)
+	assert len(first) != len(other) or not np.array_equal(first.centres, other.centres)
+
+
+def test_layer_is_flat_and_two_spheres_wide_deep():
+	layer = packing.layer(0.02, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
+	assert layer.flat
+	assert layer.size == pytest.approx([0.02, 0.03, 4e-3])
+	assert (layer.centres[:, :2] - layer.radii[:, None] >= -1e-7).all() and (layer.centres[:, :2] + layer.radii[:, None] <= np.array([0.02, 0.03]) + 1e-7).all()
+
+
+def test_packer_is_silent(capfd):
+	packing.prism(5e-3, 5e-3, 5e-3, 1e-3, 2e-3, fails=10)
+	assert capfd.readouterr().out == ""
+
+
+def test_neighbours_are_all_pairs_within_the_gap():
+	random = np.random.default_rng(2)
+	spheres = packing.Packing(random.uniform(0, 1, (150, 3)), 10**random.uniform(-2.3, -0.8, 150))
+	for gap in (0, 0.03):
+		expected = [
+			(i, j) for i, j in itertools.combinations(range(len(spheres)), 2)
+			if np.linalg.norm(spheres.centres[i] - spheres.centres[j]) < spheres.radii[i] + spheres.radii[j] + gap
+		]
+		assert spheres.neighbours(gap).tolist() == [list(pair) for pair in expected]
+
+
+def test_files_keep_every_digit(tmp_path, prism):
+	prism.bonds = prism.neighbours(5e-6)
+	for unit in ("m", "mm"):
+		prism.write(tmp_path / "p.csv", tmp_path / "b.csv", length_unit=unit)
+		back = packing.read(tmp_path / "p.csv", tmp_path / "b.csv", length_unit=unit)
+		assert np.array_equal(back.bonds, prism.bonds)
+		assert np.allclose(back.centres, prism.centres, rtol=1e-15, atol=0) and np.allclose(back.radii, prism.radii, rtol=1e-15, atol=0)
+
+
+def test_ids_of_a_file_may_be_any_numbers(tmp_path):
+	(tmp_path / "p.csv").write_text("r, id, x, y, z, colour\n1,10,0,0,0,red\n2,7,3,0,0,blue\n")
+	(tmp_path / "b.csv").write_text("i,j\n7,10\n")
+	spheres = packing.read(tmp_path / "p.csv", tmp_path / "b.csv", length_unit="mm")
+	assert spheres.bonds.tolist() == [[0, 1]]
+	assert spheres.centres[1] == pytest.approx([3e-3, 0, 0]) and spheres.radii == pytest.approx([1e-3, 2e-3])
+
+
+@pytest.mark.parametrize("lines, words", [
+	(["id,x,y,z", "0,0,0,0"], "line 1: column r is missing"),
+	(["id,x,y,z,r", "0,0,0,0,1", "1,0,zero,0,1"], "line 3: y = 'zero' is not a number"),
+	(["id,x,y,z,r", "0,0,0,0,1", "1,0,0,1"], "line 3: 4 fields"),
+	(["id,x,y,z,r", "0,0,0,0,-1"], "line 2: radius r = -1.0 mm must be positive"),
+	(["id,x,y,z,r", "0,0,0,nan,1"], "line 2: z = nan is not finite"),
+	(["id,x,y,z,r", "0,0,0,0,1", "0,2,0,0,1"], "line 3: id 0 appears twice"),
+	(["id,x,y,z,r", "0.5,0,0,0,1"], "line 2: id = '0.5' is not a whole number"),
+	(["id,x,y,z,r"], "no spheres"),
+])
+def test_bad_particle_files_name_the_line(tmp_path, lines, words):
+	(tmp_path / "p.csv").write_text("\n".join(lines) + "\n")
+	with pytest.raises(ValueError, match=words.replace("'", ".")):
+		packing.read(tmp_path / "p.csv", length_unit="mm")
+
+
+@pytest.mark.parametrize("lines, words", [
+	(["i,j", "0,1", "1,5"], "line 3: there is no sphere with id 5"),
+	(["i,j", "1,1"], "line 2: sphere 1 is bonded to itself"),
+	(["i", "1"], "line 1: column j is missing"),
+	(["i,j", "0,1", "1,0"], "listed twice"),
+])
+def test_bad_bond_files_name_the_line(tmp_path, lines, words):
+	(tmp_path / "p.csv").write_text("id,x,y,z,r\n0,0,0,0,1\n1,2,0,0,1\n")
+	(tmp_path / "b.csv").write_text("\n".join(lines) + "\n")
+	with pytest.raises(ValueError, match=words):
+		packing.read(tmp_path / "p.csv", tmp_path / "b.csv")
+
+
+@pytest.mark.parametrize("change, words", [
+	({"rmax": 6e-3}, "does not fit"), ({"rmin": 3e-3}, "rmin = 0.003 m is above rmax"), ({"width": -1}, "width = -1 m must be positive"),
+	({"rmin": float("nan")}, "rmin = nan m must be positive"),
+])
+def test_bad_prisms_are_refused(change, words):
+	with pytest.raises(ValueError, match=words):
+		packing.prism(**{**dict(width=0.01, height=0.02, depth=0.01, rmin=1e-3, rmax=2e-3), **change})
+
+
+@pytest.mark.parametrize("centres, radii, words", [
+	([[0, 0, 0]], [0], "sphere 0: radius = 0.0 m must be positive"), ([[0, 0, float("nan")]], [1], "sphere 0: centre"), ([[0, 0, 0]], [1, 2], "a radius for each centre"),
+])
+def test_bad_packings_are_refused(centres, radii, words):
+	with pytest.raises(ValueError, match=words):
+		packing.Packing(centres, radii)
+
+
+def test_unknown_unit_is_refused(tmp_path):
+	with pytest.raises(ValueError, match="length_unit = 'inch' is unknown"):
+		packing.read(tmp_path / "p.csv", length_unit="inch")
