@@ -20,7 +20,7 @@ class EnergyBalance:
 		begun = O.trackEnergy and len(O.energy.keys()) > 0
 		self._born = O.iter
 		self.start = O.energy.total() if begun else 0.0 if O.iter == 0 and _at_rest() else None  #: total [J] that the book must keep; None until it is known
-		self.largest = 0.0  #: largest error at any :meth:`record` so far [-]
+		self._drift = self._through = 0.0  # largest at any record [J]
 		O.trackEnergy = True
 
 	def parts(self):
@@ -30,19 +30,29 @@ class EnergyBalance:
 	@property
 	def error(self):
 		"""How far the total has moved, and what stores and losses have below zero, over the energy that has gone through the system [-]; 0 before anything happened."""
+		drift, through = self._now()
+		return drift / through if through > 0 else 0.0
+
+	@property
+	def largest(self):
+		"""Largest such distance at any :meth:`record`, over the largest energy that has gone through [-]; a moment when next to nothing had gone through does not count."""
+		return self._drift / self._through if self._through > 0 else 0.0
+
+	def record(self):
+		"""The parts now, and keep the largest error."""
+		drift, through = self._now()
+		self._drift, self._through = max(self._drift, drift), max(self._through, through)
+		return self.parts()
+
+	def _now(self):
 		if self.start is None:
 			if O.iter == self._born:
-				return 0.0
+				return 0.0, 0.0
 			self.start = O.energy.total()
 		parts = self.parts()
 		through = max(sum(abs(parts.get(name, 0)) for name in EXTERNAL), sum(value for name, value in parts.items() if name not in EXTERNAL))
 		borrowed = -sum(min(0.0, parts.get(name, 0.0)) for name in NEVER_NEGATIVE)
-		return (abs(O.energy.total() - self.start) + borrowed) / through if through > 0 else 0.0
-
-	def record(self):
-		"""The parts now, and keep the largest error."""
-		self.largest = max(self.largest, self.error)
-		return self.parts()
+		return abs(O.energy.total() - self.start) + borrowed, through
 
 
 def _at_rest():

@@ -342,7 +342,7 @@ class TestSpecimen:
 		assert strain == sorted(strain)
 		assert strain[-1] == pytest.approx(2 * 2.0 * (O.time - 5e-6) / 0.02, rel=0.01)
 		assert 0 < broken[peak] < broken[-1] < 1
-		assert balance.largest < 5e-3
+		assert balance.largest < 1e-2  # the bound that the project states for runs that dissipate
 		records = sample.broken
 		assert len(records) == round(broken[-1] * sample.initial_bonds) == sample.initial_bonds - len(sample.bonds)
 		assert set(records["mode"]) == {"tension", "shear"}

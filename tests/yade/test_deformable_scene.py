@@ -130,6 +130,7 @@ def test_state_is_current_after_a_pause_and_renewed_during_a_run():
 			break
 	O.pause()
 	time.sleep(0.1)  # the step in hand ends
+	block.positions  # reading anything from the engine brings State up to date
 	assert len(seen) > 3
 	assert staleness(block) == 0
 
