@@ -4,26 +4,52 @@
 
 #include <pkg/ddem/YadeInclude.hpp>
 
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
 #include <malloc.h>
 #include <memory>
+#include <vector>
 
 namespace yade::ddem {
 
 namespace {
 
-	/// What the allocator really hands out for that many bytes; the sizes of two classes are comparable only after this rounding.
-	std::size_t usableSize(std::size_t size)
-	{
-		const std::unique_ptr<void, decltype(&std::free)> block(std::malloc(size), &std::free);
-		return malloc_usable_size(block.get());
-	}
-
 	std::unique_ptr<Factorable> makeStockObject(const char* name) { return std::unique_ptr<Factorable>(ClassFactory::instance().createPure(name)); }
+
+	std::size_t usableSize(const Factorable& object) { return malloc_usable_size(const_cast<void*>(dynamic_cast<const void*>(&object))); }
+
+	struct Block {
+		explicit Block(std::size_t size)
+		        : start(std::malloc(size))
+		{
+		}
+		~Block() { std::free(start); }
+		Block(const Block&) = delete;
+		Block& operator=(const Block&) = delete;
+		void*  start;
+	};
+	std::size_t usableSize(const Block& block) { return malloc_usable_size(block.start); }
+
+	/// The smallest block that the allocator handed out for any of several objects alive at once. Sizes of two classes are comparable only as the allocator rounds
+	/// them, and it now and then gives the rest of a free chunk away with one that is too small to keep: 16 bytes more, by chance of the heap.
+	template <typename Make> std::size_t smallestUsableSize(Make make)
+	{
+		std::vector<decltype(make())> alive;
+		std::size_t                   smallest = std::numeric_limits<std::size_t>::max();
+		for (int i = 0; i < 16; i++) {
+			alive.push_back(make());
+			smallest = std::min(smallest, usableSize(*alive.back()));
+		}
+		return smallest;
+	}
 
 	/// Compares the size of class `Class`, called `name` in YADE's factory.
 	template <typename Class> std::string compareSize(const char* name, const Factorable& stock)
 	{
-		const std::size_t inYade = malloc_usable_size(const_cast<void*>(dynamic_cast<const void*>(&stock))), here = usableSize(sizeof(Class));
+		if (usableSize(stock) == usableSize(Block(sizeof(Class)))) return ""; // the usual case needs no second look
+		const std::size_t inYade = smallestUsableSize([name] { return makeStockObject(name); });
+		const std::size_t here   = smallestUsableSize([] { return std::make_unique<Block>(sizeof(Class)); });
 		if (inYade == here) return "";
 		return std::string("  class ") + name + ": " + std::to_string(inYade) + " bytes in YADE, " + std::to_string(here) + " in the plugin\n";
 	}
