@@ -15,3 +15,14 @@ install(CODE "
 	endforeach()
 	message(STATUS \"Overlay prefix of links to \${stock}: ${overlay}\")
 " COMPONENT classes)
+
+# Modules that the checkout no longer has must not be found any more.
+install(CODE "
+	set(package \"${overlay}/${YADE_LIBRARY_SUBDIR}/py/yade/ddem\")
+	file(GLOB_RECURSE modules RELATIVE \"\${package}\" \"\${package}/*.py\")
+	foreach(module IN LISTS modules)
+		if(NOT EXISTS \"${PROJECT_SOURCE_DIR}/py/ddem/\${module}\")
+			file(REMOVE \"\${package}/\${module}\")
+		endif()
+	endforeach()
+" COMPONENT python)
