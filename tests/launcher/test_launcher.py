@@ -93,7 +93,9 @@ def test_number_of_threads(script, options, variable, threads):
 
 def test_ctrl_c_stops_the_script(script):
 	path = script('import time\nprint("started", flush=True)\ntime.sleep(60)')
-	process = subprocess.Popen([DDEM, 'run', path], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True)
+	# A job started in the background ignores Ctrl-C and hands that on; a person at a terminal does not.
+	listen = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
+	process = subprocess.Popen([DDEM, 'run', path], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True, preexec_fn=listen)
 	for line in process.stdout:
 		if line.startswith('started'):
 			break
