@@ -15,7 +15,8 @@ Any path, mixed in strain and stress; the state goes on from one call to the nex
 	point = MaterialPoint(concrete(fractureEnergy=40e3), effects={"viscoplasticFlow", "damage"})
 	shear = point.path(duration=0.01, strain={"xy": 0.005}, stress={"yy": -10e6})
 
-It works outside YADE too. Tension is positive, SI units; xy is the tensor component of strain (half the engineering shear).
+It works outside YADE too: append the directory that holds the package to the path (``sys.path.append("…/py/yade")``) and write ``from ddem.materialpoint import …``.
+Tension is positive, SI units; xy is the tensor component of strain (half the engineering shear).
 """
 import difflib
 import numbers
@@ -60,7 +61,7 @@ class PathResult:
 	damage_ratio: np.ndarray  # damage parameter, 0 intact to 1 [-]
 	modulus_factor: np.ndarray  # of the equation of state on the moduli [-]
 	plastic_dissipation: np.ndarray  # [J/m³]
-	damage_dissipation: np.ndarray  # [J/m³]
+	damage_dissipation: np.ndarray  # by damage and by closing and opening cracks [J/m³]
 	stored_energy: np.ndarray  # [J/m³]
 	axial_start: float = 0.0  # axial strain where axial loading began [-]
 
