@@ -10,8 +10,8 @@ import pytest
 from ddem.materialpoint import EFFECTS, MaterialPoint, concrete
 
 
-# Zubelewicz (2018), Tables 1 and 2, with the closures that the law documents; numbers of an independent implementation. The kernel's own test is converged in the step and
-# complete; here the default step of 1e-5 must be good enough for a user.
+# Zubelewicz (2018), Tables 1 and 2, with the closures that the law documents; numbers of an independent implementation. The kernel's own test is converged in
+# the step and complete; here the default step of 1e-5 must be good enough for a user.
 @pytest.mark.parametrize(
 	"rate, until, confinement, strength", [
 		(-1, -0.006, 0, -91.1e6),
