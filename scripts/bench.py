@@ -74,3 +74,27 @@ for size in options.triangles:
 	O.engines = [ForceResetter(), newton]
 	O.dt = 1e-9
 	row("NewtonIntegrator (YADE), free spheres", "bodies", size, measure(newton, size, max(20, steps // 5)))
+
+
+# bonds at rest: what is measured is the law of bonds that hold
+steps = 50 if options.quick else 200
+spheres = ddem.packing.prism(0.03, 0.06, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
+O.reset()
+O.materials.append(BondedMat(label="rock"))
+sample = ddem.bonded.append(spheres, "rock")
+O.engines = ddem.bonded.engines()
+O.dt = 1e-9
+loop = next(e for e in O.engines if isinstance(e, InteractionLoop))
+row("InteractionLoop, rigid bonds (normal, shear, bending, torsion)", "bonds", len(sample.bonds), measure(loop, len(sample.bonds), steps))
+
+O.reset()
+O.materials.append(JCFpmMat(young=1e11, poisson=0.2, cohesion=1e9, tensileStrength=1e9, frictionAngle=0.7, density=2600))
+for centre, radius in zip(spheres.centres, spheres.radii):
+	O.bodies.append(utils.sphere(centre, radius))
+loop = InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.01)], [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
+	[Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM()])
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.01)]), loop, NewtonIntegrator()]
+O.dt = 1e-9
+O.run(1, True)
+count = O.interactions.countReal()
+row("InteractionLoop, JCFpm bonds (YADE; normal and shear only)", "bonds", count, measure(loop, count, steps))
