@@ -20,6 +20,8 @@ from .runs import cost_ratios
 
 _TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 
+THOUSANDS = "\u202f"  #: between thousands: a narrow space
+
 #: rows of the table: name in the summary, text, unit shown, factor to it, format; None: a line
 ROWS = (
 	("particles", "particles", "", 1, "{:,d}"),
@@ -35,8 +37,9 @@ ROWS = (
 	None,
 	("dt_s", "time step", "µs", 1e6, "{:.3f}"),
 	("steps", "steps", "", 1, "{:,d}"),
-	("wall_s", "wall time", "s", 1, "{:.1f}"),
 	("cpu_s", "processor time", "s", 1, "{:.1f}"),
+	("wall_s", "wall time", "s", 1, "{:.1f}"),
+	("recording_s", "of it for recording", "s", 1, "{:.1f}"),
 	("ns_per_particle_step", "per particle and step", "ns", 1, "{:,.0f}"),
 	("ns_per_degree_of_freedom_step", "per degree of freedom and step", "ns", 1, "{:,.0f}"),
 )
@@ -155,4 +158,4 @@ def processor():
 
 
 def _formatted(value, factor, form):
-	return "–" if value is None else form.format(factor * value).replace(",", "\u202f")  # narrow space between thousands
+	return "–" if value is None else form.format(factor * value).replace(",", THOUSANDS)

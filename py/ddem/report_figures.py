@@ -3,6 +3,7 @@
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.collections import LineCollection
+from matplotlib.ticker import FormatStrFormatter
 
 from . import plots
 from .measures import instants
@@ -34,7 +35,7 @@ def stress_strain(runs):
 		_label(ax, "axial strain [%]", "axial stress [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))
-		ax.legend()
+		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
 	return fig
 
 
@@ -54,8 +55,8 @@ def wall_forces(runs):
 
 def damage(runs):
 	"""Broken bonds and damage over strain."""
-	fig, axes = _figure(1, plots.COLUMN, 60)
-	ax, names = axes[0], {"rigid": "broken share of the bonds", "deformable": "mean damage of the triangles"}
+	fig, axes = _figure(1, plots.COLUMN, 65)
+	ax, names = axes[0], {"rigid": "broken share of bonds", "deformable": "mean damage of triangles"}
 	with rc_context(plots.STYLE):
 		for run in runs:
 			strain, values, peak = 100 * run.series["strain"], run.series["damage"], run.strength.peak
@@ -64,8 +65,8 @@ def damage(runs):
 		ax.plot([], [], "o", color="0.4", markersize=3.5, label="at the peak stress")
 		_label(ax, "axial strain [%]", "damage of the sample [-]")
 		ax.set_xlim(left=0)
-		ax.set_ylim(0, max(0.1, 1.15 * max(run.series["damage"].max() for run in runs)))
-		ax.legend(loc="upper left")
+		ax.set_ylim(bottom=0)
+		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
 	return fig
 
 
@@ -85,7 +86,7 @@ def energy(runs):
 				base = base + values
 			shown["work of the platens"], = book.plot(strain, run.energy("input"), color="black", linewidth=0.9)
 			_label(book, None, "energy [J]" if book is axes[0, 0] else None, run.title)
-			error.semilogy(strain, np.maximum(100 * np.abs(run.series["energy_error"]) / run.energy_through, 1e-10), color=MODEL_COLOURS[run.model])
+			error.semilogy(strain, np.maximum(100 * np.abs(run.series["energy_drift"]) / run.energy_through, 1e-10), color=MODEL_COLOURS[run.model])
 			_label(error, "axial strain [%]", "error [%]" if error is axes[1, 0] else None)
 			book.set_xlim(0, strain[-1])
 			book.set_ylim(bottom=0)
@@ -201,6 +202,7 @@ def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
 			bar = fig.colorbar(ax.collections[0], ax=ax if own_scales else axes, label=label, extend="both" if own_scales else "neither", **look)
 			if own_scales:
 				bar.ax.locator_params(nbins=3)
+				bar.formatter = FormatStrFormatter("%g")
 	return fig
 
 

@@ -18,6 +18,7 @@ ENERGY_PARTS = {
 	"friction": ("friction", ),
 	"damping": ("bodyDamping", "nonviscDamp"),
 }
+RECORDER = "recorder"  #: label of the engine that keeps the record
 EXTERNAL = ("externalWork", "gravWork")  #: what came in from outside, booked with a minus sign
 
 
@@ -35,9 +36,10 @@ class Run:
 	wall: float  # wall time of all steps with their recording [s]
 	busy: float  # processor time of the same, all threads together [s]
 	threads: int
-	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_error (what the book has too much) [SI]
+	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_drift (what the book has too much) [SI]
 	snapshots: list  # of snapshots.TriangleSnapshot or SphereSnapshot, in order of time
 	engines: list  # (name, wall seconds, calls) in order
+	energy_error: float  # largest error of the energy book, see energy.EnergyBalance.largest [-]
 	stopped: str  # why the run ended
 	setup: float = 0.0  # wall time until the first step [s]
 	parameters: list = field(default_factory=list)  # (name, value with unit, meaning)
@@ -49,11 +51,6 @@ class Run:
 		return strength(self.series["strain"], self.series["stress"])
 
 	@property
-	def energy_error(self):
-		"""Largest error of the energy book at any record, over the largest energy that has gone through the sample [-]."""
-		return float(np.abs(self.series["energy_error"]).max() / self.energy_through)
-
-	@property
 	def energy_through(self):
 		"""The larger of the work put in and the energy found in the sample, at most [J]."""
 		found = sum(values for values in map(self.energy, ENERGY_PARTS) if values is not None)
@@ -61,7 +58,8 @@ class Run:
 
 	@property
 	def seconds_per_step(self):
-		return self.wall / self.steps
+		"""Wall time of a step in all engines but the recorder [s]."""
+		return sum(seconds for name, seconds, _ in self.engines if name != RECORDER) / self.steps
 
 	def energy(self, part):
 		"""One of :data:`ENERGY_PARTS`, or "input", over time [J]; None when the book has none of its entries."""
@@ -85,6 +83,7 @@ class Run:
 			"steps": self.steps,
 			"wall_s": self.wall,
 			"cpu_s": self.busy,
+			"recording_s": sum(seconds for name, seconds, _ in self.engines if name == RECORDER),
 			"setup_s": self.setup,
 			"ns_per_particle_step": 1e9 * self.seconds_per_step / self.particles,
 			"ns_per_degree_of_freedom_step": 1e9 * self.seconds_per_step / self.degrees_of_freedom,

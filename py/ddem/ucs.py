@@ -10,12 +10,13 @@ from yade import ConcreteDamageMat, O, PyRunner, timing
 from . import loading
 from .block import Block
 from .energy import EnergyBalance
-from .runs import Run
+from .runs import RECORDER, Run
 from .series import Series
 from .snapshots import SphereSnapshot, TriangleSnapshot
 
-ROWS = 500  #: records up to the largest strain
-SNAPSHOTS = 50  #: pictures in memory up to the largest strain
+ROWS = 1000  #: records up to the largest strain
+SNAPSHOTS = 100  #: pictures in memory up to the largest strain
+FILES = 50  #: calls of the recorders up to the largest strain
 _HELD = 0.02  # part of the largest strain over which the stress must stay low before the test is over
 
 running = None  #: the test that is running, for the PyRunner that calls it
@@ -71,7 +72,7 @@ class CompressionTest:
 	:param platens: of either model; they know the sample
 	:param duration: longest time to run [s]
 	:param stop: the sample has failed when its stress stays below this part of the peak; 0: run for the whole duration
-	:param recorders: called with every snapshot, for instance :class:`vtk.Recorder`
+	:param recorders: called at the start, now and then, and at the end, for instance :class:`vtk.Recorder`
 	:param critical_dt: largest stable time step [s], to report
 	"""
 
@@ -83,7 +84,7 @@ class CompressionTest:
 		self.platens, self.duration, self.stop, self.recorders, self.critical_dt = platens, duration, stop, tuple(recorders), critical_dt
 		self.specimen = Specimen(platens.sample)
 		self.rows, self.snapshots, self._peak = [], [], 0.0
-		self.stopped = None
+		self.stopped = self._filed = None
 
 	def run(self, progress=True):
 		"""Run the test and return its :class:`runs.Run`. The scene stays as it is at the end, for a closer look.
@@ -96,15 +97,14 @@ class CompressionTest:
 			raise ValueError(f"O.dt = {O.dt} s must be positive; set it to ddem.time_step(0.8) or ddem.bonded.time_step(0.8)")
 		steps = max(1, round(self.duration / O.dt))
 		period = max(1, steps // ROWS)
-		self._look = max(1, ROWS // SNAPSHOTS)
 		self._held = max(2, round(_HELD * steps / period))
 		self.specimen.prepare()
 		self.book = EnergyBalance()
 		recorder = "__import__('yade.ddem.ucs', fromlist=['running']).running.record()"
-		O.engines = O.engines + [PyRunner(command=recorder, iterPeriod=period, firstIterRun=period, label="recorder")]
+		O.engines = O.engines + [PyRunner(command=recorder, iterPeriod=period, firstIterRun=period, label=RECORDER)]
 		O.timingEnabled = True
 		timing.reset()
-		self._keep(self.specimen.snapshot())
+		self._look(files=True)
 		running, self._first = self, O.iter
 		start, busy = time.perf_counter(), time.process_time()
 		try:
@@ -115,8 +115,7 @@ class CompressionTest:
 		wall, busy = time.perf_counter() - start, time.process_time() - busy
 		if self.stopped is None:
 			self.stopped = "largest strain reached"
-		if self.snapshots[-1].time < O.time:
-			self._keep(self.specimen.snapshot())
+		self._look(files=True)
 		return self._result(wall, busy)
 
 	def record(self):
@@ -125,11 +124,11 @@ class CompressionTest:
 		row = {
 			"time": O.time, "strain": self.platens.strain, "stress": self.platens.stress, "force_top": self.platens.force_top,
 			"force_bottom": self.platens.force_bottom, "damage": self.specimen.damage,
-			"energy_error": O.energy.total() - self.book.start
+			"energy_drift": O.energy.total() - (self.book.start or 0.0)
 		}
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
-		if len(self.rows) % self._look == 0:
-			self._keep(self.specimen.snapshot())
+		if len(self.rows) % (ROWS // SNAPSHOTS) == 0:
+			self._look(files=len(self.rows) % (ROWS // FILES) == 0)
 		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
 		self._peak = max(self._peak, row["stress"])
 		if len(self.rows) > self._held and (stress < self.stop * self._peak).all():
@@ -138,10 +137,14 @@ class CompressionTest:
 		self._bar.update(O.iter - self._first - self._bar.n)
 		self._bar.set_postfix_str(f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False)
 
-	def _keep(self, snapshot):
-		self.snapshots.append(snapshot)
-		for recorder in self.recorders:
-			recorder()
+	def _look(self, files):
+		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
+		if not self.snapshots or self.snapshots[-1].time < O.time:
+			self.snapshots.append(self.specimen.snapshot())
+		if files and self._filed != O.time:
+			self._filed = O.time
+			for recorder in self.recorders:
+				recorder()
 
 	def _result(self, wall, busy):
 		units = {"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "damage": "-"}
@@ -153,5 +156,6 @@ class CompressionTest:
 		return Run(
 			model=specimen.model, title=specimen.title, particle=specimen.particle, particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=O.dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
-			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines], stopped=self.stopped, extra=specimen.figures()
+			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines], energy_error=self.book.largest, stopped=self.stopped,
+			extra=specimen.figures()
 		)

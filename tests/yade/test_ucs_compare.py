@@ -60,9 +60,9 @@ def test_summary(quick):
 		assert figures["particles"] > 1000 and figures["steps"] > 1000
 		assert figures["peak_passed"]
 		# Plane strain, uniaxial: 53.5 MPa at 1/s at a point of this concrete (Zubelewicz's constants); rough ends confine the block and raise it, the spread of
-		# fracture energies lowers it. Cylinders of concrete peak at 0.2 to 0.3 % (fib Model Code 2010, table 5.1-8).
-		assert 45 < figures["ucs_MPa"] < 80, model
-		assert 0.0012 < figures["strain_at_peak"] < 0.004, model
+		# fracture energies lowers it; at 10/s the concrete carries more. Cylinders of concrete peak at 0.2 to 0.3 % (fib Model Code 2010), less in plane strain.
+		assert 50 < figures["ucs_MPa"] < 90, model
+		assert figures["ucs_MPa"] / 62e3 < figures["strain_at_peak"] < 0.004, model  # not stiffer than elastic, see below
 		# Elastic plane strain: E/(1 - ν²) = 62 GPa for B = 30 GPa, μ = 26 GPa; flow before the peak lowers the slope.
 		assert 25 < figures["young_GPa"] < 63, model
 		assert 0 < figures["damage_at_peak"] < figures["damage_at_end"] < 1
