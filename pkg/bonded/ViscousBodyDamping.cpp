@@ -9,21 +9,27 @@ DDEM_PLUGIN((ViscousBodyDamping))
 
 namespace {
 
-	/// Damping loads of the free components of one motion, and what they take away.
-	struct Drag {
-		Vector3r load = Vector3r::Zero();
-		Real     loss = 0;
-	};
-
-	Drag drag(const Vector3r& velocity, const Vector3r& load, const Vector3r& mass, Real viscosity, Real dt, const State& state, bool rotation)
+	/// Damping loads of one motion; none where it is blocked.
+	Vector3r
+	dragLoad(const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass, const State& state, bool rotation)
 	{
-		Drag result;
-		for (int axis = 0; axis < 3; axis++) {
-			if (state.blockedDOFs & State::axisDOF(axis, rotation)) continue;
-			result.load[axis] = ddem::viscousLoad(velocity[axis], load[axis], mass[axis], viscosity, dt);
-			result.loss -= result.load[axis] * dt * (velocity[axis] + 0.5 * dt * (load[axis] + result.load[axis]) / mass[axis]);
-		}
-		return result;
+		Vector3r drag;
+		for (int axis = 0; axis < 3; axis++)
+			drag[axis] = damper.load(velocity[axis], load[axis], mass[axis]);
+		if (state.blockedDOFs)
+			for (int axis = 0; axis < 3; axis++)
+				if (state.blockedDOFs & State::axisDOF(axis, rotation)) drag[axis] = 0;
+		return drag;
+	}
+
+	/// What they take away [J].
+	Real
+	dragLoss(const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass, const State& state, bool rotation)
+	{
+		Real loss = 0;
+		for (int axis = 0; axis < 3; axis++)
+			if (!(state.blockedDOFs & State::axisDOF(axis, rotation))) loss += damper.loss(velocity[axis], load[axis], mass[axis]);
+		return loss;
 	}
 
 } // namespace
@@ -55,21 +61,25 @@ const NewtonIntegrator& ViscousBodyDamping::checkedIntegrator() const
 
 void ViscousBodyDamping::action()
 {
-	const int  mask = checkedIntegrator().mask;
-	const Real dt   = scene->dt;
-	Real       loss = 0;
+	const int                 mask = checkedIntegrator().mask;
+	const ddem::ViscousDamper linear(viscosity, scene->dt), angular(rotationalViscosity, scene->dt);
+	const auto&               bodies = *scene->bodies;
+	const long                size   = long(bodies.size());
+	const bool                book   = scene->trackEnergy;
+	Real                      loss   = 0;
 	scene->forces.sync();
-	for (const auto& body : *scene->bodies) {
+#pragma omp parallel for schedule(static) reduction(+ : loss)
+	for (long id = 0; id < size; id++) {
+		const Body* body = bodies[int(id)].get();
 		if (!body || body->isClumpMember() || body->isClump() || (mask > 0 && !body->maskCompatible(mask))) continue;
 		const State& state = *body->state;
 		if (state.blockedDOFs == State::DOF_ALL) continue;
-		const auto linear  = drag(state.vel, scene->forces.getForce(body->id), Vector3r::Constant(state.mass), viscosity, dt, state, false);
-		const auto angular = drag(state.angVel, scene->forces.getTorque(body->id), state.inertia, rotationalViscosity, dt, state, true);
-		scene->forces.addForceUnsynced(body->id, linear.load);
-		scene->forces.addTorqueUnsynced(body->id, angular.load);
-		loss += linear.loss + angular.loss;
+		const Vector3r force = scene->forces.getForce(int(id)), torque = scene->forces.getTorque(int(id)), mass = Vector3r::Constant(state.mass);
+		scene->forces.addForceUnsynced(int(id), dragLoad(linear, state.vel, force, mass, state, false));
+		scene->forces.addTorqueUnsynced(int(id), dragLoad(angular, state.angVel, torque, state.inertia, state, true));
+		if (book) loss += dragLoss(linear, state.vel, force, mass, state, false) + dragLoss(angular, state.angVel, torque, state.inertia, state, true);
 	}
-	if (scene->trackEnergy) scene->energy->add(loss, "bodyDamping", lossIx, false);
+	if (book) scene->energy->add(loss, "bodyDamping", lossIx, false);
 }
 
 } // namespace yade

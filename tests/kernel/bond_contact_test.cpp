@@ -161,15 +161,15 @@ TEST(WallRepulsion, isPiTimesRadiusTimesStiffnessTimesOverlap)
 	EXPECT_EQ(wallRepulsion(0.7e-3, 100e9, 1), 0);
 }
 
-TEST(ViscousLoad, halvesTheVelocityInTheExpectedTimeAndBooksItsEnergyExactly)
+TEST(ViscousDamper, slowsDownExponentiallyAndBooksItsEnergyExactly)
 {
-	const double mass = 2, viscosity = 5, dt = 1e-3, load = 0.3;
-	double       velocity = 1, lost = 0, pushed = 0;
+	const double        mass = 2, viscosity = 5, dt = 1e-3, load = 0.3;
+	const ViscousDamper damper(viscosity, dt);
+	double              velocity = 1, lost = 0, pushed = 0;
 	for (int i = 0; i < 1000; i++) {
-		const double drag = viscousLoad(velocity, load, mass, viscosity, dt), next = velocity + dt * (load + drag) / mass,
-		             mean = 0.5 * (velocity + next);
+		const double drag = damper.load(velocity, load, mass), next = velocity + dt * (load + drag) / mass, mean = 0.5 * (velocity + next);
 		EXPECT_NEAR(drag, -viscosity * mass * mean, 1e-12);
-		lost -= drag * mean * dt;
+		lost += damper.loss(velocity, load, mass);
 		pushed += load * mean * dt;
 		velocity = next;
 	}
@@ -178,11 +178,11 @@ TEST(ViscousLoad, halvesTheVelocityInTheExpectedTimeAndBooksItsEnergyExactly)
 	EXPECT_NEAR(0.5 * mass * velocity * velocity + lost - pushed, 0.5 * mass, 1e-12);
 }
 
-TEST(ViscousLoad, isStableHoweverStrong)
+TEST(ViscousDamper, isStableHoweverStrong)
 {
 	double velocity = 1;
 	for (int i = 0; i < 10; i++)
-		velocity += viscousLoad(velocity, 0, 1, 1e9, 1);
+		velocity += ViscousDamper(1e9, 1).load(velocity, 0, 1);
 	EXPECT_LE(std::abs(velocity), 1);
 }
 

@@ -69,18 +69,40 @@ inline HalfAngle halfAngle(double scalar, double squared)
 	return { factor, (1 - factor) / squared };
 }
 
+/// a b. Inlined by force: compilers see too many calls of it to do so, and three calls a bond show in the time of a whole step.
+[[gnu::always_inline]] inline Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b)
+{
+	return Eigen::Quaterniond(
+	        a.w() * b.w() - a.x() * b.x() - a.y() * b.y() - a.z() * b.z(),
+	        a.w() * b.x() + a.x() * b.w() + a.y() * b.z() - a.z() * b.y(),
+	        a.w() * b.y() + a.y() * b.w() + a.z() * b.x() - a.x() * b.z(),
+	        a.w() * b.z() + a.z() * b.w() + a.x() * b.y() - a.y() * b.x());
+}
+
+/// Matrix of the rotation half way between two unit quaternions less than π apart: that of their sum, whose length need not be one.
+inline Eigen::Matrix3d rotationBetween(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b)
+{
+	const double    w = a.w() + b.w(), x = a.x() + b.x(), y = a.y() + b.y(), z = a.z() + b.z();
+	const double    s = 2 / (w * w + x * x + y * y + z * z), sx = s * x, sy = s * y, sz = s * z;
+	Eigen::Matrix3d matrix;
+	matrix << 1 - (y * sy + z * sz), x * sy - w * sz, x * sz + w * sy, //
+	        x * sy + w * sz, 1 - (x * sx + z * sz), y * sz - w * sx,   //
+	        x * sz - w * sy, y * sz + w * sx, 1 - (x * sx + y * sy);
+	return matrix;
+}
+
 /** Loads of a bond.
  * \param branch x2 - x1 [m]
  * \param orientation1,orientation2 unit quaternions, body to world
  */
 inline BondLoads bondLoads(const Bond& bond, const Eigen::Vector3d& branch, const Eigen::Quaterniond& orientation1, const Eigen::Quaterniond& orientation2)
 {
-	const Eigen::Quaterniond end1     = orientation1 * bond.frame1;
-	Eigen::Quaterniond       relative = end1.conjugate() * (orientation2 * bond.frame2);
-	if (relative.w() < 0) relative.coeffs() = -relative.coeffs(); // the shorter of the two rotations
-	const Eigen::Vector3d    v = relative.vec();
-	const Eigen::Quaterniond middle(end1 * Eigen::Quaterniond(1 + relative.w(), v.x(), v.y(), v.z()).normalized());
-	const auto               axes = middle.toRotationMatrix(); // columns: the bond's axes in the world
+	const Eigen::Quaterniond end1 = product(orientation1, bond.frame1);
+	Eigen::Quaterniond       end2 = product(orientation2, bond.frame2);
+	if (end1.dot(end2) < 0) end2.coeffs() = -end2.coeffs(); // the shorter of the two rotations between them
+	const Eigen::Quaterniond relative = product(end1.conjugate(), end2);
+	const Eigen::Vector3d    v        = relative.vec();
+	const Eigen::Matrix3d    axes     = rotationBetween(end1, end2); // columns: the bond's axes in the world
 
 	const Eigen::Vector3d local = axes.transpose() * branch;
 	const HalfAngle       half  = halfAngle(relative.w(), v.squaredNorm());
