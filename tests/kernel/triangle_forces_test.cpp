@@ -220,6 +220,16 @@ TEST(StressForces, areTheDivergenceTheoremsTractions) // a homogeneous stress lo
 	}
 }
 
+TEST(ElasticStress, isIsotropicAndStoresHalfItsWork) // σ = λ tr ε 1 + 2μ ε in plane strain, w = ½ λ tr² ε + μ ε:ε
+{
+	const double                lambda = 3, mu                    = 5;
+	const InPlaneTensor<double> strain { 0.7, -0.2, 0.4 }, stress = elasticStress(strain, lambda, mu);
+	EXPECT_DOUBLE_EQ(stress.xx, 3 * 0.5 + 10 * 0.7);
+	EXPECT_DOUBLE_EQ(stress.yy, 3 * 0.5 - 10 * 0.2);
+	EXPECT_DOUBLE_EQ(stress.xy, 10 * 0.4);
+	EXPECT_DOUBLE_EQ(energyDensity(stress, strain), 1.5 * 0.25 + 5 * (0.49 + 0.04 + 2 * 0.16));
+}
+
 TEST(CoreMoment, comesFromTheRotationStrainAloneAtSmallStrain) // stress is symmetric: its moment is of second order, that of ε_φ is h S μ β_φ ε_φ
 {
 	Random         random(16);

@@ -143,6 +143,19 @@ TEST(FrequencyBound, isTheFrequencyOfAFreeTriangle)
 		}
 }
 
+TEST(FrequencyBound, holdsForSharesThatLeaveACoreNoInertia) // a quarter and more is allowed where cores do not rotate
+{
+	const Mesh mesh = rectangle(4, 6, 0.1, 0.2, 0.2, 3);
+	for (const auto rotation : { RotationTreatment::None, RotationTreatment::Corotational })
+		for (const double share : { 0.25, 0.5, 0.9 }) {
+			Material m;
+			m.vertexShare       = share;
+			const double global = Assembly(mesh, { m }, rotation).highestFrequency(), limit = bound(mesh, { m }, rotation);
+			EXPECT_LE(global, limit * (1 + 1e-12)) << name(rotation) << ", share " << share;
+			EXPECT_GT(global, 0.7 * limit) << name(rotation) << ", share " << share;
+		}
+}
+
 TEST(FrequencyBound, isTightOnAMeshOfEqualTriangles) // it costs at most 10 % of the step where all elements are alike
 {
 	for (const auto rotation : allTreatments) {
