@@ -20,7 +20,7 @@ configure() {
 	local stamp=$1 identity=$2 strict=$3
 	as_caller rm -f "$stamp"
 	inside cmake -S "$checkout" -B "$build_dir/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DYADE_SOURCE_DIR="$yade_source" -DDDEM_OVERLAY="$overlay" \
-		${strict:+-DDDEM_WARNINGS_AS_ERRORS=ON} || return 1
+		${strict:+-DDDEM_WARNINGS_AS_ERRORS=ON} || return
 	printf '%s' "$identity" | as_caller tee "$stamp" >/dev/null
 }
 

@@ -46,10 +46,10 @@ make_base_system() {
 	rm -rf --one-file-system "$unfinished"
 	# In a namespace of its own: what debootstrap mounts vanishes with it even if it is killed.
 	if ! unshare --mount --propagation private debootstrap --variant=minbase --keyring=/usr/share/keyrings/debian-archive-keyring.gpg $DEBIAN_RELEASE "$unfinished" ${address:+"$address"}; then
-		[[ $address ]] || return 1
+		[[ $address ]] || return
 		echo "The archive of this machine's apt does not serve $DEBIAN_RELEASE; trying debootstrap's default."
 		rm -rf --one-file-system "$unfinished"
-		unshare --mount --propagation private debootstrap --variant=minbase --keyring=/usr/share/keyrings/debian-archive-keyring.gpg $DEBIAN_RELEASE "$unfinished" || return 1
+		unshare --mount --propagation private debootstrap --variant=minbase --keyring=/usr/share/keyrings/debian-archive-keyring.gpg $DEBIAN_RELEASE "$unfinished" || return
 	fi
 	mkdir -p "$unfinished/var/lib/yade-ddem"
 	sync -f "$unfinished"
@@ -67,16 +67,29 @@ proxy_for_debootstrap() {
 
 install_packages() {
 	local stamp=$1
+	wait_for_orphans
 	configure_root_apt
 	in_root dpkg --configure --pending --force-confdef || true # an interrupted start; what is still broken, apt completes below
-	in_root apt-get update || return 1
+	in_root apt-get update || return
 	# shellcheck disable=SC2046 # one word a package
-	in_root apt-get -o APT::Status-Fd=1 -o DPkg::Lock::Timeout=600 install -y --fix-broken --no-install-recommends $(listed_packages) || return 1
-	fetch_headers_in_root || return 1
+	in_root apt-get -o APT::Status-Fd=1 -o DPkg::Lock::Timeout=600 install -y --fix-broken --no-install-recommends $(listed_packages) || return
+	fetch_headers_in_root || return
 	in_root apt-get clean
 	rm -rf "$root"/var/lib/apt/lists/*
 	sync -f "$root"
 	touch "$stamp"
+}
+
+# A dpkg does not inherit our lock from its apt: when only the latter was killed, it is still at work.
+wait_for_orphans() {
+	local process said=
+	for process in /proc/[0-9]*; do
+		while [[ $(cat "$process/comm" 2>/dev/null) =~ ^(dpkg|apt-get)$ && $(readlink "$process/root") == "$root" ]]; do
+			[[ $said ]] || echo "waiting for process ${process#/proc/}, which an earlier start has left behind"
+			said=yes
+			sleep 1
+		done
+	done
 }
 
 # The root's apt: the archive debootstrap has used, with sources for the headers; this machine's proxies and certificates; no documentation.

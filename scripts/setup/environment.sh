@@ -60,8 +60,8 @@ fetch_host_headers() {
 	apt-get indextargets --format 'deb-src [signed-by=$(SIGNED_BY)] $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' \
 		| sed 's/ \[signed-by=\(\$(SIGNED_BY)\)\{0,1\}\]//' | sort -u | as_caller tee "$apt/sources.list"
 	local options=(-o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=/dev/null -o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt" -o APT::Sandbox::User=)
-	as_caller apt-get "${options[@]}" update || return 1
-	(cd "$directory.unfinished" && as_caller apt-get "${options[@]}" source --tar-only --download-only "yade=$version") || return 1
+	as_caller apt-get "${options[@]}" update || return
+	(cd "$directory.unfinished" && as_caller apt-get "${options[@]}" source --tar-only --download-only "yade=$version") || return
 	as_caller mv "$directory.unfinished" "$directory"
 	rm -rf "$apt"
 }
