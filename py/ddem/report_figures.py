@@ -80,7 +80,7 @@ def energy(runs):
 			strain, base = 100 * run.series["strain"], 0.0
 			for part in ENERGY_PARTS:
 				values = run.energy(part)
-				if values is None or not np.abs(values).max() > 2e-3 * np.abs(run.energy("input")).max():
+				if values is None or not np.abs(values).max() > 0.01 * np.abs(run.energy("input")).max():
 					continue
 				shown[part] = book.fill_between(strain, base, base + values, color=_PART_COLOURS[part], linewidth=0, alpha=0.85)
 				base = base + values

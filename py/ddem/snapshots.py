@@ -48,7 +48,8 @@ class SphereSnapshot:
 def rotations(sample):
 	"""Rotation vectors of bonded spheres since the start (n, 3) [rad], of a length up to π."""
 	from yade import O
-	return np.array([O.bodies[int(i)].state.rot() for i in sample.ids])
+	turned = (O.bodies[i].state.rot() for i in sample.ids.tolist())
+	return np.array([(r[0], r[1], r[2]) for r in turned])  # several times as fast as an array of Vector3
 
 
 def crack_traces(first, second, radius):
