@@ -14,7 +14,7 @@ from .runs import RECORDER, Run
 from .series import Series
 from .snapshots import SphereSnapshot, TriangleSnapshot
 
-ROWS = 1000  #: records up to the largest strain
+ROWS = 1000  #: records up to the largest strain, unless told otherwise
 SNAPSHOTS = 100  #: pictures in memory up to the largest strain
 FILES = 50  #: calls of the recorders up to the largest strain
 _HELD = 0.02  # part of the largest strain over which the stress must stay low before the test is over
@@ -74,15 +74,18 @@ class CompressionTest:
 	:param stop: the sample has failed when its stress stays below this part of the peak; 0: run for the whole duration
 	:param recorders: called at the start, now and then, and at the end, for instance :class:`vtk.Recorder`
 	:param critical_dt: largest stable time step [s], to report
+	:param rows: records in the longest time
 	"""
 
-	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan")):
+	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS):
 		if not duration > 0:
 			raise ValueError(f"duration = {duration} s must be positive")
 		if not 0 <= stop < 1:
 			raise ValueError(f"stop = {stop} must be a part of the peak stress, from 0 to below 1")
 		self.platens, self.duration, self.stop, self.recorders, self.critical_dt = platens, duration, stop, tuple(recorders), critical_dt
-		self.specimen = Specimen(platens.sample)
+		if rows < SNAPSHOTS:
+			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
+		self.specimen, self.longest = Specimen(platens.sample), rows
 		self.rows, self.snapshots, self._peak = [], [], 0.0
 		self.stopped = self._filed = None
 
@@ -96,7 +99,7 @@ class CompressionTest:
 		if not O.dt > 0:
 			raise ValueError(f"O.dt = {O.dt} s must be positive; set it to ddem.time_step(0.8) or ddem.bonded.time_step(0.8)")
 		steps = max(1, round(self.duration / O.dt))
-		period = max(1, steps // ROWS)
+		period = max(1, steps // self.longest)
 		self._held = max(2, round(_HELD * steps / period))
 		self.specimen.prepare()
 		self.book = EnergyBalance()
@@ -127,8 +130,8 @@ class CompressionTest:
 			"energy_drift": O.energy.total() - (self.book.start or 0.0)
 		}
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
-		if len(self.rows) % (ROWS // SNAPSHOTS) == 0:
-			self._look(files=len(self.rows) % (ROWS // FILES) == 0)
+		if len(self.rows) % (self.longest // SNAPSHOTS) == 0:
+			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
 		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
 		self._peak = max(self._peak, row["stress"])
 		if len(self.rows) > self._held and (stress < self.stop * self._peak).all():
