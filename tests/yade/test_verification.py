@@ -1,0 +1,139 @@
+# GPL v2 or later, see LICENSE.
+"""Every verification case holds, and the framework tells when one does not."""
+import json
+import os
+import re
+import subprocess
+
+import pytest
+
+from yade import O
+from yade.ddem import verification
+from yade.ddem.verification import framework, page
+
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "scripts", "verify.py")
+KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s"]
+
+
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow else []) for case in verification.all_cases()])
+def test_case(case):
+	result = verification.run(case, pictures=True)
+	assert not result.error, result.error
+	assert result.passed, [record.plain() for record in result.records if not record.passed]
+	assert result.pictures
+
+
+# --- the framework
+
+
+def made(function, group="statics", seconds=1):
+	"""A case that is not in the package's list."""
+	return framework.Case(function.__name__, group, seconds, function)
+
+
+def right(check, shift=0.0):
+	"""A title
+
+	Some text
+	over two lines.
+
+		σ = E ε
+
+	Reference: a book.
+	"""
+	check("length [m]", 2.002 + shift, 2.0, 2e-3, "ruler")
+	check("stress [Pa]", -0.5, 0, 1e-3, "free sides", scale=1e3)
+
+
+def wrong(check):
+	"""It fails"""
+	check("length [m]", 2.1, 2.0, 1e-2, "ruler")
+	check("number", float("nan"), 2.0, 1e-2, "ruler")
+
+
+def broken(check):
+	"""It raises"""
+	check("length [m]", 2, 2, 1e-2, "ruler")
+	raise RuntimeError("no such luck")
+
+
+def silent(check):
+	"""It compares nothing"""
+
+
+def test_errors_are_relative_to_the_reference_or_the_scale():
+	result = verification.run(made(right))
+	first, second = result.records
+	assert first.error == pytest.approx(1e-3)
+	assert second.error == pytest.approx(5e-4)
+	assert result.passed
+	assert not verification.run(made(right), shift=0.01).passed
+	assert result.case.text == [("", "Some text over two lines.", False), ("", "σ = E ε", True), ("Reference", "a book.", False)]
+
+
+@pytest.mark.parametrize("function, count", [(wrong, 2), (broken, 1), (silent, 0)])
+def test_what_does_not_hold_fails(function, count):
+	result = verification.run(made(function))
+	assert not result.passed
+	assert sum(not record.passed for record in result.records) == count
+	assert ("no such luck" in result.error) == (function is broken)
+	json.dumps([record.plain() for record in result.records], allow_nan=False)
+
+
+def test_a_check_without_a_scale_is_refused():
+	def zero(check):
+		"""Zero"""
+		check("stress [Pa]", 1, 0, 1e-3, "free sides")
+
+	assert "give scale=" in verification.run(made(zero)).error
+
+
+def test_mistakes_are_named():
+	with pytest.raises(ValueError, match="did you mean settling"):
+		verification.find("setling")
+	with pytest.raises(ValueError, match="has no setting width; it has shift"):
+		verification.run(made(right), width=1)
+	with pytest.raises(ValueError, match="group 'nowhere'"):
+		verification.case(group="nowhere", seconds=1)
+
+
+def test_every_case_explains_itself():
+	for case in verification.all_cases():
+		labels = [label for label, _, _ in case.text]
+		assert "Reference" in labels and "Expect" in labels, case.name
+		assert len(case.title) < 80 and not case.title.endswith("."), case.name
+
+
+def test_page_holds_everything(tmp_path):
+	results = [verification.run(made(function), pictures=True) for function in (right, wrong, broken)] + [verification.run("settling", pictures=True)]
+	path = page.write(results, str(tmp_path / "new"), "run it --so", {"YADE": "1"})
+	text = open(path, encoding="utf-8").read()
+	for expected in ("3 of 10 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"):
+		assert expected in text, expected
+	assert text.count("data:image/png;base64,") == 2
+	assert sorted(os.listdir(tmp_path / "new")) == ["errors.png", "settling.png", "verification.html"]
+	# self-contained: nothing is loaded from elsewhere
+	assert not re.search(r"""(src|href)\s*=\s*["'](?!data:|#)|url\(|@import|<script|<link""", text)
+
+
+# --- the script
+
+
+def verify(*arguments):
+	return subprocess.run(["yade", "-n", "-x", SCRIPT, *arguments], capture_output=True, text=True, check=False)
+
+
+def test_script_writes_the_promised_list(tmp_path):
+	done = verify("--case", "settling", "--json", str(tmp_path / "deep" / "records.json"))
+	assert done.returncode == 0, done.stderr
+	records = json.load(open(tmp_path / "deep" / "records.json", encoding="utf-8"))
+	assert [list(record) for record in records] == [KEYS] * 4
+	assert "4 of 4 checks passed" in done.stdout
+
+
+def test_script_complains_about_wrong_calls(tmp_path):
+	unknown = verify("--case", "setling")
+	assert unknown.returncode == 2 and "did you mean settling" in unknown.stderr
+	(tmp_path / "file").write_text("")
+	blocked = verify("--case", "settling", "--report", str(tmp_path / "file"))
+	assert blocked.returncode == 2 and "cannot write" in blocked.stderr
