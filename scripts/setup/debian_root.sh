@@ -67,17 +67,39 @@ proxy_for_debootstrap() {
 
 install_packages() {
 	local stamp=$1
+	# shellcheck disable=SC2046 # one word a package
+	apt_install_in_root $(listed_packages) || return
+	fetch_headers_in_root || return
+	clear_root_apt
+	touch "$stamp"
+}
+
+# install_needed: the packages in $needed, which are not worth having for those who never run the scripts that ask for them.
+install_needed() {
+	local package missing=()
+	for package in "${needed[@]}"; do
+		[[ $(in_root dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || missing+=("$package")
+	done
+	((${#missing[@]} == 0)) || phase "Debian packages ${missing[*]}" install_more "${missing[@]}"
+}
+
+install_more() {
+	apt_install_in_root "$@" || return
+	clear_root_apt
+}
+
+apt_install_in_root() {
 	wait_for_orphans
 	configure_root_apt
 	in_root dpkg --configure --pending --force-confdef || true # an interrupted start; what is still broken, apt completes below
 	in_root apt-get update || return
-	# shellcheck disable=SC2046 # one word a package
-	in_root apt-get -o APT::Status-Fd=1 -o DPkg::Lock::Timeout=600 install -y --fix-broken --no-install-recommends $(listed_packages) || return
-	fetch_headers_in_root || return
+	in_root apt-get -o APT::Status-Fd=1 -o DPkg::Lock::Timeout=600 install -y --fix-broken --no-install-recommends "$@"
+}
+
+clear_root_apt() {
 	in_root apt-get clean
 	rm -rf "$root"/var/lib/apt/lists/*
 	sync -f "$root"
-	touch "$stamp"
 }
 
 # A dpkg does not inherit our lock from its apt: when only the latter was killed, it is still at work.

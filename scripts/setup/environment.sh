@@ -17,10 +17,11 @@ choose_environment() {
 	readonly root
 }
 
-# prepare_environment: YADE, compiler, libraries and headers are there afterwards.
+# prepare_environment: YADE, compiler, libraries, headers and the packages in $needed are there afterwards.
 prepare_environment() {
 	if [[ $root ]]; then
 		make_debian_root
+		install_needed
 		yade_source=${YADE_SOURCE_DIR:-$(newest "$root"/usr/src/yade/yade_*.orig.tar.*)}
 		yade_source=${yade_source#"$root"}
 	else
@@ -32,7 +33,8 @@ prepare_environment() {
 install_host_packages() {
 	local missing
 	[[ -x $(command -v dpkg-query) ]] || return 0 # not a Debian: CMake says what is missing
-	missing=$(missing_packages)
+	# shellcheck disable=SC2046 # one word a package
+	missing=$(missing_packages $(listed_packages) "${needed[@]}")
 	[[ $missing ]] || return 0
 	((EUID == 0)) || fail "these packages are missing: sudo apt-get install --no-install-recommends $missing"
 	# shellcheck disable=SC2086 # one word a package

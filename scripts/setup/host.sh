@@ -15,10 +15,21 @@ version_at_least() { [[ $1 ]] && [[ $(printf '%s\n' "$2" "$1" | sort -V | head -
 # Packages a file of ours lists, without its comments.
 listed_packages() { sed -e 's/#.*//' "$setup_dir/packages" | tr -s ' \t\n' ' '; }
 
-# Those of them this machine lacks.
+# find_needed WHO FILE…: sets needed, the packages that scripts ask for with "# needs: NAME …" in the comments at their top; WHO is named in complaints.
+find_needed() {
+	local who=$1 package
+	shift
+	needed=()
+	while read -r package; do
+		[[ $package =~ ^[a-z0-9][a-z0-9+.-]+$ ]] || usage_error "$who: a script needs '$package', which is not the name of a Debian package"
+		needed+=("$package")
+	done < <(awk 'FNR == 1 { top = 1 } !/^#/ { top = 0 } top && sub(/^# needs:/, "") { for (i = 1; i <= NF; i++) print $i }' "$@" | sort -u)
+}
+
+# missing_packages NAME…: those of them this machine lacks.
 missing_packages() {
 	local package
-	for package in $(listed_packages); do
+	for package in "$@"; do
 		[[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || printf '%s ' "$package"
 	done
 }

@@ -82,6 +82,43 @@ def test_script_error_is_exit_code_1(script):
 	assert result.returncode == 1 and 'ZeroDivisionError' in result.stderr
 
 
+@pytest.fixture
+def fake_apt(tmp_path):
+	"""An environment whose apt-get only notes what it is asked to do; and the file with the notes."""
+	notes, program = tmp_path / 'notes', tmp_path / 'bin' / 'apt-get'
+	program.parent.mkdir()
+	program.write_text('#!/bin/sh\necho "$*" >> "%s"\n' % notes)
+	program.chmod(0o755)
+	notes.touch()
+	return {**os.environ, 'PATH': '%s:%s' % (program.parent, os.environ['PATH'])}, notes
+
+
+def test_package_that_a_script_needs_is_installed_or_named(script, fake_apt):
+	environment, notes = fake_apt
+	result = ddem('run', script('# A comment.\n# needs: ddem-absent python3-numpy\nprint("the script runs")'), env=environment)
+	if os.getuid() == 0:
+		assert result.returncode == 0 and 'the script runs' in result.stdout, result.stderr
+		installed = [line.split() for line in notes.read_text().splitlines() if ' install ' in line]
+		assert len(installed) == 1 and '--no-install-recommends' in installed[0]
+		assert installed[0][-1] == 'ddem-absent' and 'python3-numpy' not in installed[0]  # the latter is there already
+	else:
+		assert result.returncode == 125 and 'sudo apt-get install --no-install-recommends ddem-absent' in result.stderr
+
+
+def test_needs_count_only_at_the_top_of_a_script(script, fake_apt):
+	environment, notes = fake_apt
+	result = ddem('run', script('#!/usr/bin/env python3\n# needs: python3-numpy\nprint("the script runs")\n# needs: ddem-absent\n'), env=environment)
+	assert result.returncode == 0 and 'the script runs' in result.stdout, result.stderr
+	assert notes.read_text() == ''
+
+
+def test_needs_that_are_no_package_names_are_refused(script, fake_apt):
+	environment, notes = fake_apt
+	result = ddem('run', script('# needs: python3-numpy --allow-downgrades\n'), env=environment)
+	assert result.returncode == 2 and "'--allow-downgrades', which is not the name of a Debian package" in result.stderr
+	assert notes.read_text() == ''
+
+
 @pytest.mark.parametrize('options, variable, threads', [(['--threads', '2'], None, 2), ([], '2', 2), ([], None, 1)])
 def test_number_of_threads(script, options, variable, threads):
 	environment = {key: value for key, value in os.environ.items() if key != 'OMP_NUM_THREADS'}
