@@ -1,0 +1,292 @@
+# GPL v2 or later, see LICENSE.
+"""Calibration: parameters of a model tuned until what is measured on it meets its targets. Needs no YADE; the model is any function.
+
+::
+
+	from yade.ddem.calibration import Calibration, Parameter, Target
+	from yade.ddem.evaluations import Bench
+
+	def measure(values, case):                        # or virtualtest.SeparateYade, a virtual test
+		return {"young": 0.6 * values["young"], "ucs": 0.8 * values["cohesion"]**0.9}
+
+	with Bench(measure, path="out/evaluations.jsonl") as bench:
+		outcome = Calibration(
+			[Parameter("young", 50e9, 5e9, 500e9, {"young": 1}), Parameter("cohesion", 50e6, 5e6, 500e6, {"ucs": 1})],
+			[Target("young", 40e9, 0.02), Target("ucs", 60e6, 0.02)], bench,
+		).run()
+	print(outcome.reached, outcome.best.values, outcome.why)
+
+Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is an elasticity d ln(measure)/d ln(parameter), and
+the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search starts with steps by the scaling laws of the
+parameters, as long as each at least halves the largest miss. Then scipy's trust-region least squares takes over, with elasticities measured by finite differences, all
+columns at the same time; they are measured again where a step did not even halve what was missed. Steps of finite differences are large (8 %), because breaking of
+bonds is chaotic and small steps would measure its noise. The search stops at the first point that meets all targets.
+"""
+import math
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .evaluations import EvaluationError, OutOfBudget, Point
+
+DIGITS = 6  #: significant digits of parameters that are tried: more would say nothing, and keep a repeated start from recognising them
+_HALF = 0.5  # a step that leaves more than this of what was missed is a poor one
+_NOTHING = 0.05  # elasticities below it do not count
+_ALIKE = 0.05  # targets whose elasticities are independent by less than this part answer alike
+_NEAR = 0.01  # a parameter this close to a bound, in its logarithm, has hit it
+_SMALLEST_GAIN = 1e-2  # the search ends where a step lowers the sum of squares by less than this part
+_SMALLEST_STEP = 2e-3  # the search ends at steps of parameters below it, far below what finite differences see
+
+
+@dataclass(frozen=True)
+class Parameter:
+	"""A positive parameter to tune, between bounds. *laws* are the elasticities that scaling laws give it: measure -> d ln(measure)/d ln(parameter)."""
+	name: str
+	start: float
+	lower: float
+	upper: float
+	laws: dict = field(default_factory=dict)
+
+	def __post_init__(self):
+		if not all(math.isfinite(value) and value > 0 for value in (self.start, self.lower, self.upper)):
+			raise ValueError(f"parameter {self.name}: start {self.start}, bounds {self.lower} and {self.upper} must be positive and finite")
+		if not self.lower < self.upper:
+			raise ValueError(f"parameter {self.name}: the lower bound, {self.lower:g}, must be below the upper one, {self.upper:g}")
+		if not self.lower <= self.start <= self.upper:
+			raise ValueError(f"parameter {self.name}: the start, {self.start:g}, must lie between the bounds, {self.lower:g} and {self.upper:g}")
+
+
+@dataclass(frozen=True)
+class Target:
+	"""A positive value that a measure is to reach, within a relative tolerance."""
+	name: str
+	value: float
+	tolerance: float
+
+	def __post_init__(self):
+		if not (math.isfinite(self.value) and self.value > 0):
+			raise ValueError(f"target {self.name} = {self.value} must be positive and finite")
+		if not 0 < self.tolerance < 1:
+			raise ValueError(f"target {self.name}: tolerance = {self.tolerance} must be a part of the target, between 0 and 1 (0.02 for 2 %)")
+
+	def miss(self, point):
+		"""Relative distance of a point from the target [-]."""
+		return point.measured[self.name] / self.value - 1
+
+
+@dataclass
+class Step:
+	"""A point the search looked at, and why."""
+	number: int
+	purpose: str  # "start", "scaling", "search", or "sensitivity"
+	point: Point
+	parameter: str = None  # the one that was changed, for a sensitivity
+
+
+@dataclass
+class Outcome:
+	"""What a calibration found."""
+	reached: bool
+	best: Point  # the point closest to the targets; None when none could be measured
+	why: list  # sentences on why it ended
+	steps: list  # all of :class:`Step`, in order
+	elasticities: np.ndarray  # d ln(target)/d ln(parameter), a row a target, a column a parameter; None when not measured
+	elasticities_at: dict  # parameters around which they were measured
+	parameters: list
+	targets: list
+	seconds: float  # of the search [s]
+	hit: dict = field(default_factory=dict)  # parameter -> "lower" or "upper", the bounds at which the search ended
+
+
+class Calibration:
+	"""Searches for the parameters; :meth:`run` does it.
+
+	:param parameters: list of :class:`Parameter`
+	:param targets: list of :class:`Target`, named after the measures of the bench
+	:param bench: :class:`evaluations.Bench`
+	:param step: relative step of finite differences [-]; above the noise of the model
+	:param sensitivities: measure elasticities in the end where the search needed none
+	:param tell: called with every :class:`Step`
+	"""
+
+	def __init__(self, parameters, targets, bench, step=0.08, sensitivities=True, tell=None):
+		for kind, items in (("parameter", parameters), ("target", targets)):
+			names = [item.name for item in items]
+			if not names:
+				raise ValueError(f"a calibration needs at least one {kind}")
+			if len(set(names)) < len(names):
+				raise ValueError(f"a {kind} is given twice: {', '.join(names)}")
+		if not 0 < step < 1:
+			raise ValueError(f"step = {step} of finite differences must be a part of the parameters, between 0 and 1")
+		self.parameters, self.targets, self.bench, self.step, self.sensitivities = list(parameters), list(targets), bench, step, sensitivities
+		self.tell = tell or (lambda step: None)
+		self.steps, self.best, self._jacobian, self._jacobian_at = [], None, None, None
+		self._lower, self._upper = (np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper"))
+
+	def run(self):
+		"""Search, and return an :class:`Outcome`; a target that is out of reach is no error."""
+		begin, reached, why = time.perf_counter(), True, []
+		try:
+			start = self._scale(np.log([p.start for p in self.parameters]))
+			self._least_squares(start)
+			reached, why = False, self._explain()
+		except _Reached:
+			pass
+		except (OutOfBudget, EvaluationError) as error:
+			reached, why = False, [str(error)]
+		if reached and self.sensitivities and self._jacobian is None:
+			try:
+				self._differences(self._logs(self.best.values), stop=False)
+			except (OutOfBudget, EvaluationError) as error:
+				why.append(f"sensitivities could not be measured: {error}")
+		return Outcome(
+			reached, self.best, why, self.steps, self._jacobian, self._jacobian_at, self.parameters, self.targets, time.perf_counter() - begin,
+			{} if self.best is None else self._bounds_hit(self.best)
+		)
+
+	# --- the search
+	def _scale(self, x):
+		"""Steps by the scaling laws, from log-parameters *x*; returns the best point as log-parameters."""
+		laws = np.array([[p.laws.get(target.name, 0.0) for p in self.parameters] for target in self.targets])
+		point = self._look([x], "start")[0]
+		if point.error:
+			raise EvaluationError(f"the first evaluation failed: {point.error}")
+		while laws.any():
+			step = np.linalg.lstsq(laws, -self._misses(point), rcond=None)[0]
+			following = np.clip(x + step, self._lower, self._upper)
+			if np.abs(following - x).max() < _SMALLEST_STEP:
+				break
+			further = self._look([following], "scaling")[0]
+			if further.error or self._worst(further) >= self._worst(point):
+				break
+			good = self._worst(further) <= _HALF * self._worst(point)
+			x, point = self._logs(further.values), further
+			if not good:
+				break
+		return x
+
+	def _least_squares(self, start):
+		"""scipy's trust-region search from log-parameters *start*.
+
+		The variables are 1 + ln(p/p_start): scipy takes the first trust region and the smallest step relative to their length.
+		"""
+		tolerances = np.array([target.tolerance for target in self.targets])
+		missed = math.inf  # at the point before
+
+		def residuals(z):
+			point = self._look([start + z - 1], "search")[0]
+			return np.full(len(self.targets), np.nan) if point.error else self._misses(point) / tolerances  # NaN: scipy tries a shorter step
+
+		def jacobian(z):
+			nonlocal missed
+			x = start + z - 1
+			now = np.linalg.norm(self._misses(self._look([x], "search")[0]) / tolerances)
+			poor = self._jacobian is None or now > _HALF * missed and np.abs(x - self._logs(self._jacobian_at)).max() > 0.5 * math.log1p(self.step)
+			if poor:
+				self._differences(x)
+			missed = now
+			return self._jacobian / tolerances[:, None]
+
+		margin = 1e-9  # scipy wants a start inside the bounds
+		first = np.clip(np.ones(len(start)), 1 + self._lower - start + margin, 1 + self._upper - start - margin)
+		least_squares(residuals, first, jac=jacobian, bounds=(1 + self._lower - start, 1 + self._upper - start), xtol=_SMALLEST_STEP, ftol=_SMALLEST_GAIN, gtol=1e-6)
+
+	def _differences(self, x, stop=True):
+		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time; the other way where a bound is near or a point fails."""
+		base = self._look([x], "search", stop)[0]
+		x, width = self._logs(base.values), math.log1p(self.step)
+		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
+		moved = [x + np.eye(len(x))[k] * signs[k] * width for k in range(len(x))]
+		points = self._look(moved, "sensitivity", stop)
+		for k in [k for k, point in enumerate(points) if point.error]:
+			points[k] = self._look([x - np.eye(len(x))[k] * signs[k] * width], "sensitivity", stop, [k])[0]
+			if points[k].error:
+				raise EvaluationError(f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}")
+		change = np.array([self._misses(point) - self._misses(base) for point in points]).T
+		self._jacobian = change / np.array([self._logs(point.values)[k] - x[k] for k, point in enumerate(points)]) + 0.0  # no negative zeros
+		self._jacobian_at = base.values
+
+	# --- points
+	def _look(self, logs, purpose, stop=True, columns=None):
+		"""Measure points given as log-parameters; raises _Reached at one that meets all targets, unless told not to *stop*."""
+		values = [{p.name: min(max(_rounded(value), p.lower), p.upper) for p, value in zip(self.parameters, np.exp(x).tolist())} for x in logs]
+		seen = [step.point for step in self.steps]
+		points = self.bench.measure(values)
+		for k, point in enumerate(points):
+			if not point.error:
+				missing = [target.name for target in self.targets if target.name not in point.measured]
+				if missing:
+					raise ValueError(f"nothing measures the target {missing[0]}; there are {', '.join(point.measured) or 'no measures'}")
+				if not all(point.measured[target.name] > 0 for target in self.targets):
+					points[k] = point = Point(point.values, {}, {}, "a measure is not positive: " + ", ".join(f"{n} = {v:g}" for n, v in point.measured.items()))
+			if any(point.values == other.values for other in seen):
+				continue  # told already
+			parameter = self.parameters[(columns or range(len(points)))[k]].name if purpose == "sensitivity" else None
+			self.steps.append(Step(len(self.steps) + 1, purpose, point, parameter))
+			if not point.error and (self.best is None or self._worst(point) < self._worst(self.best)) and stop:
+				self.best = point
+			self.tell(self.steps[-1])
+		if stop and self.best and self._worst(self.best) <= 1:
+			raise _Reached
+		return points
+
+	def _logs(self, values):
+		return np.log([values[p.name] for p in self.parameters])
+
+	def _misses(self, point):
+		"""Logarithmic distances from the targets."""
+		return np.log([point.measured[target.name] / target.value for target in self.targets])
+
+	def _worst(self, point):
+		"""The largest distance from a target over its tolerance; all targets are met up to 1."""
+		return max(abs(target.miss(point)) / target.tolerance for target in self.targets)
+
+	# --- why it ended
+	def _bounds_hit(self, point):
+		x = self._logs(point.values)
+		hit = {}
+		for k, parameter in enumerate(self.parameters):
+			if min(x[k] - self._lower[k], self._upper[k] - x[k]) < _NEAR:
+				hit[parameter.name] = "lower" if x[k] - self._lower[k] < self._upper[k] - x[k] else "upper"
+		return hit
+
+	def _explain(self):
+		"""Sentences on why the search ended at the best point without meeting all targets."""
+		why, best = [], self.best
+		hit, missed = self._bounds_hit(best), [i for i, target in enumerate(self.targets) if abs(target.miss(best)) > target.tolerance]
+		gradient = self._jacobian.T @ (self._misses(best) / np.square([target.tolerance for target in self.targets]))  # downhill is against it
+		for k, parameter in enumerate(self.parameters):
+			side = hit.get(parameter.name)
+			if side and (-gradient[k] > 0) == (side == "upper") and abs(self._jacobian[missed, k]).max() > _NOTHING:
+				why.append(f"the {side} bound of {parameter.name}, {getattr(parameter, side):g}, keeps it from going further")
+		size = np.abs(self._jacobian).max(axis=1)
+		for i in missed:
+			if size[i] < _NOTHING:
+				why.append(f"no tuned parameter moves {self.targets[i].name} (all elasticities are below {_NOTHING:g}): tune another one")
+		rows = [i for i in range(len(self.targets)) if size[i] >= _NOTHING]
+		for a in rows:
+			for b in rows:
+				if a < b and (a in missed or b in missed) and self._alike(a, b):
+					names = f"{self.targets[a].name} and {self.targets[b].name}"
+					why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
+		if not why:
+			why.append(
+				"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, allow a larger "
+				"tolerance, or start elsewhere"
+			)
+		return why
+
+	def _alike(self, a, b):
+		"""Whether two targets have proportional elasticities."""
+		one, two = (self._jacobian[i] / np.linalg.norm(self._jacobian[i]) for i in (a, b))
+		return np.linalg.norm(one - np.sign(one @ two) * two) < _ALIKE
+
+
+class _Reached(Exception):
+	"""All targets are met."""
+
+
+def _rounded(value):
+	return float(f"{value:.{DIGITS - 1}e}")

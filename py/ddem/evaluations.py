@@ -1,0 +1,215 @@
+# GPL v2 or later, see LICENSE.
+"""Evaluations of a model, several at a time, each written down when it is done: a repeated start does not repeat them. Needs no YADE.
+
+A *point* is a set of parameters. It is measured in one or several *cases* (kinds of test, seeds), each of which is an evaluation of its own::
+
+	with Bench(evaluate, cases=[{"seed": 1}, {"seed": 2}], settings={"specimen": "prism"}, path="out/evaluations.jsonl", jobs=2) as bench:
+		first, second = bench.measure([{"young": 40e9}, {"young": 44e9}])
+		print(first.measured, second.error)
+
+The file has a line of JSON an evaluation, with all settings, parameters, and what was measured or went wrong.
+"""
+import concurrent.futures
+import datetime
+import fcntl
+import hashlib
+import json
+import math
+import os
+import time
+from dataclasses import dataclass
+
+FORMAT = 1  #: of the lines; evaluations in another format are made again
+
+
+@dataclass(frozen=True)
+class Point:
+	"""A set of parameters and what was measured there."""
+	values: dict  # parameter -> value
+	measured: dict  # measure -> mean over the cases that have it; empty where a case failed
+	scatter: dict  # measure -> standard deviation over those cases; None for a single one
+	error: str = None  # what went wrong in the first case that failed
+	reused: bool = False  # whether all of it had been measured before
+	seconds: float = 0.0  # of all its evaluations together, when they were made [s]
+
+
+class Store:
+	"""A file of evaluations, locked against a second process; None keeps them in memory.
+
+	:param path: JSON lines, made when missing
+	:raises OSError: the file cannot be written
+	:raises RuntimeError: another process writes into it
+	"""
+
+	def __init__(self, path=None):
+		self.path, self._lines, self._file = path, {}, None
+		self.unreadable = []  #: (number, reason) of lines that were not understood; their evaluations are made again
+		if path is None:
+			return
+		os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
+		self._file = open(path, "a+b")
+		try:
+			fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+		except OSError:
+			self._file.close()
+			raise RuntimeError(f"{path} is in use by another calibration; wait for it, or choose another folder") from None
+		self._read()
+
+	def get(self, key):
+		"""The record of a successful evaluation, or None."""
+		return self._lines.get(key)
+
+	def add(self, record):
+		"""Keep a record, and write it to the disk before returning."""
+		if record["error"] is None:
+			self._lines[record["key"]] = record
+		if self._file:
+			self._file.write(json.dumps(record, allow_nan=False).encode() + b"\n")
+			self._file.flush()
+			os.fsync(self._file.fileno())
+
+	def close(self):
+		if self._file:
+			self._file.close()
+
+	def _read(self):
+		self._file.seek(0)
+		text = self._file.read()
+		if text and not text.endswith(b"\n"):
+			self._file.write(b"\n")  # what comes next must not be glued to the rest of a line that was cut off
+		for number, line in enumerate(text.splitlines(), 1):
+			if not line.strip():
+				continue
+			try:
+				record = json.loads(line)
+				if record["format"] != FORMAT:
+					raise ValueError(f"format {record['format']} where this version has {FORMAT}")
+				if record["error"] is None:
+					if not all(math.isfinite(value) for value in record["measured"].values()):
+						raise ValueError("a measure is not finite")
+					self._lines[record["key"]] = record
+			except (ValueError, KeyError, TypeError, AttributeError) as error:
+				self.unreadable.append((number, str(error) if isinstance(error, ValueError) else f"{type(error).__name__} {error}"))
+
+
+class Bench:
+	"""Measures points in all cases, *jobs* evaluations at a time, and keeps every one.
+
+	:param evaluate: ``evaluate(values, case)`` returns a dict of finite measures, or raises; called in threads, so it should start a process for heavy work.
+		Its ``stop()``, where it has one, is called when the run is interrupted, and must end what is running.
+	:param cases: list of dicts that can be written as JSON, as {"test": "compression", "seed": 1}
+	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are not reused
+	:param path: file of a :class:`Store`
+	:param jobs: evaluations at the same time
+	:param budget: no evaluation is started beyond this number of new ones; None: no limit
+	"""
+
+	def __init__(self, evaluate, cases=({}, ), settings=None, path=None, jobs=1, budget=None):
+		if not cases:
+			raise ValueError("a bench needs at least one case")
+		if not (isinstance(jobs, int) and jobs >= 1):
+			raise ValueError(f"jobs = {jobs!r} must be a whole number, 1 or more")
+		self.evaluate, self.cases, self.settings, self.jobs, self.budget = evaluate, [dict(case) for case in cases], dict(settings or {}), jobs, budget
+		self.store = Store(path)
+		self.ran = self.failed = 0  #: evaluations made now, and those that failed among them
+		self._made, self._reused = set(), set()
+		self.seconds = 0.0  #: of the evaluations made now, added up [s]
+
+	def __enter__(self):
+		return self
+
+	def __exit__(self, *_):
+		self.store.close()
+
+	@property
+	def reused(self):
+		"""Number of evaluations that had been made before."""
+		return len(self._reused)
+
+	def measure(self, points):
+		"""Measure points, each a dict parameter -> value, and return a list of :class:`Point`.
+
+		An evaluation that fails makes its point an error, nothing more. The result does not depend on *jobs*.
+
+		:raises OutOfBudget: it would take more new evaluations than are left; none was started
+		"""
+		jobs = {fingerprint(self.settings, values, case): (values, case) for values in points for case in self.cases}
+		known = {key: self.store.get(key) for key in jobs}
+		missing = {key: job for key, job in jobs.items() if known[key] is None}
+		if self.budget is not None and self.ran + len(missing) > self.budget:
+			raise OutOfBudget(f"{self.budget} evaluations are used up")
+		self._reused |= jobs.keys() - missing.keys() - self._made
+		known.update(self._run(missing))
+		return [self._point(values, known) for values in points]
+
+	def _run(self, jobs):
+		records, running = {}, {}
+		pool = concurrent.futures.ThreadPoolExecutor(max_workers=self.jobs)
+		try:
+			running.update((pool.submit(self._one, key, *job), key) for key, job in jobs.items())
+			for done in concurrent.futures.as_completed(running):
+				record = done.result()
+				self.store.add(record)
+				records[record["key"]] = record
+				self._made.add(record["key"])
+				self.ran, self.seconds, self.failed = self.ran + 1, self.seconds + record["seconds"], self.failed + (record["error"] is not None)
+		except BaseException:
+			pool.shutdown(wait=False, cancel_futures=True)
+			done = [future for future, key in running.items() if key not in records and future.done() and not future.cancelled()]
+			getattr(self.evaluate, "stop", lambda: None)()
+			for future in done:
+				if future.exception() is None:
+					self.store.add(future.result())
+			raise
+		finally:
+			pool.shutdown()
+		return records
+
+	def _one(self, key, values, case):
+		record = {"format": FORMAT, "key": key, "case": case, "parameters": values, "settings": self.settings, "measured": None, "error": None}
+		start = time.perf_counter()
+		try:
+			measured = {name: float(value) for name, value in self.evaluate(dict(values), dict(case)).items()}
+			wrong = [f"{name} = {value}" for name, value in measured.items() if not math.isfinite(value)]
+			if wrong:
+				raise ValueError(f"measured {', '.join(wrong)}")
+			record["measured"] = measured
+		except Exception as error:
+			record["error"] = f"{type(error).__name__}: {error}" if not isinstance(error, EvaluationError) else str(error)
+		record["seconds"] = round(time.perf_counter() - start, 3)
+		record["finished"] = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+		return record
+
+	def _point(self, values, known):
+		keys = [fingerprint(self.settings, values, case) for case in self.cases]
+		records = [known[key] for key in keys]
+		reused, seconds = not self._made & set(keys), sum(record["seconds"] for record in records)
+		for record in records:
+			if record["error"] is not None:
+				where = ", ".join(f"{name} {value}" for name, value in record["case"].items())
+				return Point(values, {}, {}, f"{where}: {record['error']}" if where else record["error"], reused, seconds)
+		found = {}
+		for record in records:
+			for name, value in record["measured"].items():
+				found.setdefault(name, []).append(value)
+		mean = {name: math.fsum(samples) / len(samples) for name, samples in found.items()}
+		scatter = {name: _deviation(samples, mean[name]) for name, samples in found.items()}
+		return Point(values, mean, scatter, None, reused, seconds)
+
+
+class EvaluationError(RuntimeError):
+	"""An evaluation that failed for a reason its text says in full."""
+
+
+class OutOfBudget(RuntimeError):
+	"""No evaluations are left."""
+
+
+def fingerprint(settings, values, case):
+	"""The same text for the same settings, parameters and case, whatever their order."""
+	text = json.dumps([FORMAT, settings, values, case], sort_keys=True, allow_nan=False)
+	return hashlib.sha256(text.encode()).hexdigest()[:24]
+
+
+def _deviation(samples, mean):
+	return math.sqrt(math.fsum((value - mean)**2 for value in samples) / (len(samples) - 1)) if len(samples) > 1 else None

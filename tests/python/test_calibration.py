@@ -1,0 +1,275 @@
+# GPL v2 or later, see LICENSE.
+"""Calibration of models whose answer is known in closed form: what it finds, how few evaluations it takes, and what it says when there is nothing to find."""
+import math
+
+import numpy as np
+import pytest
+from ddem.calibration import Calibration, Parameter, Target
+from ddem.calibration_quantities import TUNABLES, parameters, starts, usual
+from ddem.evaluations import Bench, EvaluationError
+
+STIFFNESS = Parameter("E", 50e9, 5e9, 500e9, {"young": 1})
+COHESION = Parameter("C", 50e6, 5e6, 500e6, {"ucs": 1, "tensile": 1})
+ANGLE = Parameter("phi", 0.785, 0.17, 1.3)
+TARGETS = [Target("young", 40e9, 0.02), Target("ucs", 60e6, 0.02)]
+TENSILE = Target("tensile", 6e6, 0.02)
+
+
+def proportional(values, case):
+	return {"young": 0.6 * values["E"], "ucs": 0.8 * values["C"]}
+
+
+def power_laws(values, case):
+	"""Elasticities 1, 0 of young; 0.08, 0.9, 0.3 of ucs; 0.02, 1, -1 of tensile."""
+	phi = values.get("phi", 0.785) / 0.785
+	stiff, strong = values["E"] / 66e9, values["C"] / 75e6
+	return {"young": 40e9 * stiff, "ucs": 58e6 * stiff**0.08 * strong**0.9 * phi**0.3, "tensile": 7.4e6 * stiff**0.02 * strong / phi}
+
+
+def calibrate(model, tuned=(STIFFNESS, COHESION), targets=TARGETS, path=None, jobs=1, budget=60, cases=({}, ), **options):
+	with Bench(model, cases, path=path, jobs=jobs, budget=budget) as bench:
+		outcome = Calibration(tuned, targets, bench, **options).run()
+	return outcome, bench
+
+
+def assert_met(outcome, targets=TARGETS):
+	assert outcome.reached and outcome.why == []
+	for target in targets:
+		assert outcome.best.measured[target.name] == pytest.approx(target.value, rel=target.tolerance)
+
+
+def test_scaling_laws_need_two_evaluations():
+	outcome, bench = calibrate(proportional, sensitivities=False)
+	assert_met(outcome)
+	assert bench.ran == 2
+	assert outcome.best.values["E"] == pytest.approx(40e9 / 0.6, rel=1e-5)
+	assert outcome.best.values["C"] == pytest.approx(60e6 / 0.8, rel=1e-5)
+	assert outcome.elasticities is None
+
+
+def test_known_parameters_are_found_again():
+	truth = {"E": 91e9, "C": 123e6, "phi": 0.6}
+	targets = [Target(name, value, 1e-4) for name, value in power_laws(truth, {}).items()]
+	outcome, bench = calibrate(power_laws, (STIFFNESS, COHESION, ANGLE), targets)
+	assert_met(outcome, targets)
+	for name, value in truth.items():
+		assert outcome.best.values[name] == pytest.approx(value, rel=3e-4)
+	assert bench.ran <= 12
+
+
+def test_elasticities_are_the_exponents():
+	outcome, _ = calibrate(power_laws, (STIFFNESS, COHESION, ANGLE), [*TARGETS, TENSILE])
+	assert_met(outcome, [*TARGETS, TENSILE])
+	assert outcome.elasticities == pytest.approx(np.array([[1, 0, 0], [0.08, 0.9, 0.3], [0.02, 1, -1]]), abs=1e-4)  # six digits of the parameters
+	outcome, bench = calibrate(proportional)  # the search needed none: measured in the end, two more
+	assert outcome.elasticities == pytest.approx(np.eye(2), abs=1e-4)
+	assert bench.ran == 4 and outcome.elasticities_at == outcome.best.values
+
+
+def test_laws_are_no_necessity():
+	plain = [Parameter(p.name, p.start, p.lower, p.upper) for p in (STIFFNESS, COHESION)]
+	outcome, bench = calibrate(power_laws, plain)
+	assert_met(outcome)
+	assert bench.ran <= 8
+
+
+def test_strongly_curved_model():
+	outcome, bench = calibrate(lambda v, _: {"young": 0.6 * v["E"], "ucs": 100e6 * (1 - math.exp(-(v["C"] / 60e6)**2))})
+	assert_met(outcome)
+	assert bench.ran <= 12
+
+
+def test_more_parameters_than_targets_move_as_little_as_they_can():
+	outcome, _ = calibrate(lambda v, _: {"young": 0.6 * v["E"] * v["C"] / 50e6, "other": 1.0}, (STIFFNESS, COHESION, ANGLE), TARGETS[:1])
+	assert_met(outcome, TARGETS[:1])
+	assert outcome.best.values["phi"] == pytest.approx(ANGLE.start)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_noise_as_of_breaking_bonds(seed):
+	"""1.5 % of scatter in the strength, different at every point and the same whenever that point is asked for; three samples are averaged."""
+
+	def noisy(values, case):
+		random = np.random.default_rng([int(values["E"]), int(values["C"]), case["seed"], seed])
+		measured = power_laws(values, case)
+		return {"young": measured["young"] * (1 + 0.001 * random.normal()), "ucs": measured["ucs"] * (1 + 0.015 * random.normal())}
+
+	outcome, bench = calibrate(noisy, cases=[{"seed": k} for k in range(3)])
+	assert_met(outcome)
+	assert 0 < outcome.best.scatter["ucs"] < 0.06 * 60e6
+	assert bench.ran <= 45
+
+
+def test_steps_that_fail_are_avoided():
+	"""Nothing works above C = 70 MPa, where the first step by the scaling laws leads."""
+
+	def fragile(values, case):
+		if values["C"] > 70e6:
+			raise EvaluationError("the specimen did not fail")
+		return {"young": 0.6 * values["E"], "ucs": 60e6 * (values["C"] / 65e6)**3}
+
+	start = Parameter("C", 40e6, 5e6, 500e6, {"ucs": 1})
+	outcome, bench = calibrate(fragile, (STIFFNESS, start))
+	assert bench.failed > 0
+	assert_met(outcome)
+
+
+@pytest.mark.parametrize("model, tuned, targets, sentence, hit", [
+	(lambda v, _: {"young": 0.6 * v["E"], "ucs": 0.05 * v["C"]}, (STIFFNESS, COHESION), TARGETS, "the upper bound of C, 5e+08, keeps it from going further", {"C": "upper"}),
+	(lambda v, _: {"young": 6 * v["E"], "ucs": 0.8 * v["C"] * (v["E"] / 5e9)**0.2}, (Parameter("E", 50e9, 10e9, 500e9, {"young": 1}), COHESION), TARGETS,
+		"the lower bound of E, 1e+10, keeps it from going further", {"E": "lower"}),
+	(lambda v, _: {"young": 0.6 * v["E"], "ucs": 30e6}, (STIFFNESS, COHESION), TARGETS, "no tuned parameter moves ucs", {}),
+	(lambda v, _: {"young": 0.6 * v["E"], "ucs": 0.8 * v["C"], "tensile": 0.12 * v["C"]}, (STIFFNESS, COHESION), [*TARGETS, TENSILE],
+		"ucs and tensile answer alike to the tuned parameters", {}),
+	(lambda v, _: {"young": 0.6 * v["E"], "ucs": 0.8 * v["C"]}, (STIFFNESS, ), [TARGETS[0], Target("young2", 50e9, 0.02)], None, {}),
+])
+def test_target_out_of_reach(model, tuned, targets, sentence, hit):
+	if sentence is None:  # two targets, one parameter
+		model, sentence = (lambda v, _: {"young": 0.6 * v["E"], "young2": 0.6 * v["E"]}), "young and young2 answer alike"
+	outcome, bench = calibrate(model, tuned, targets)
+	assert not outcome.reached
+	assert any(sentence in reason for reason in outcome.why), outcome.why
+	assert {name: side for name, side in outcome.hit.items() if name in hit} == hit
+	assert bench.ran <= 20
+
+
+def test_nearest_point_is_given():
+	outcome, _ = calibrate(lambda v, _: {"young": 0.6 * v["E"], "ucs": 0.05 * v["C"]})
+	assert outcome.best.values["C"] == pytest.approx(500e6)
+	assert outcome.best.measured["ucs"] == pytest.approx(25e6)
+	assert outcome.best.measured["young"] == pytest.approx(40e9, rel=0.02)
+
+
+def test_three_targets_two_parameters():
+	outcome, _ = calibrate(power_laws, (STIFFNESS, COHESION), [*TARGETS, Target("tensile", 9e6, 0.02)])
+	assert not outcome.reached
+	# between both strengths, weighted alike: ucs must miss by as much as tensile, within the curvature
+	ucs, tensile = (abs(math.log(outcome.best.measured[name] / value)) for name, value in (("ucs", 60e6), ("tensile", 9e6)))
+	assert ucs == pytest.approx(tensile, rel=0.3)
+
+
+def test_failure_at_the_start_is_said():
+	def broken(values, case):
+		raise EvaluationError("no specimen")
+
+	outcome, bench = calibrate(broken)
+	assert (outcome.reached, outcome.best, bench.ran) == (False, None, 1)
+	assert outcome.why == ["the first evaluation failed: no specimen"]
+
+
+def test_failure_on_both_sides_is_said():
+	def island(values, case):
+		if abs(values["C"] / 50e6 - 1) > 0.01:
+			raise EvaluationError("no specimen")
+		return {"young": 0.6 * values["E"], "ucs": 30e6}
+
+	outcome, _ = calibrate(island)
+	assert not outcome.reached
+	assert "both sides of C" in outcome.why[0] and "no specimen" in outcome.why[0]
+	assert outcome.best.measured["ucs"] == 30e6
+
+
+def test_budget_is_kept():
+	outcome, bench = calibrate(lambda v, _: {"young": 0.6 * v["E"], "ucs": 0.05 * v["C"]}, budget=3)
+	assert bench.ran <= 3
+	assert (outcome.reached, outcome.why) == (False, ["3 evaluations are used up"])
+	assert outcome.best is not None
+
+
+def test_measure_that_is_not_positive_is_a_failure():
+	outcome, _ = calibrate(lambda v, _: {"young": 0.6 * v["E"], "ucs": -1.0})
+	assert not outcome.reached and "a measure is not positive" in outcome.why[0]
+
+
+def test_repeated_start_takes_everything_from_the_file(tmp_path):
+	first, bench = calibrate(power_laws, path=tmp_path / "e")
+	second, again = calibrate(lambda *_: pytest.fail("evaluated again"), path=tmp_path / "e")
+	assert (again.ran, again.reused) == (0, bench.ran)
+	assert second.best.values == first.best.values
+	assert [step.point.values for step in second.steps] == [step.point.values for step in first.steps]
+	assert np.array_equal(second.elasticities, first.elasticities)
+
+
+@pytest.mark.parametrize("after", range(1, 4))
+def test_interrupted_search_goes_on(tmp_path, after):
+	whole, bench = calibrate(power_laws, path=tmp_path / "whole")
+	asked = []
+
+	def interrupted(values, case):
+		if len(asked) == after:
+			raise KeyboardInterrupt
+		asked.append(values)
+		return power_laws(values, case)
+
+	with pytest.raises(KeyboardInterrupt):
+		calibrate(interrupted, path=tmp_path / "e")
+	resumed, rest = calibrate(power_laws, path=tmp_path / "e")
+	assert (rest.ran, rest.reused) == (bench.ran - after, after)
+	assert resumed.best.values == whole.best.values
+
+
+def test_jobs_at_the_same_time_change_nothing():
+	serial, one = calibrate(power_laws, (STIFFNESS, COHESION, ANGLE), [*TARGETS, TENSILE], cases=[{"seed": 1}, {"seed": 2}])
+	parallel, many = calibrate(power_laws, (STIFFNESS, COHESION, ANGLE), [*TARGETS, TENSILE], jobs=4, cases=[{"seed": 1}, {"seed": 2}])
+	assert one.ran == many.ran
+	assert [(s.purpose, s.parameter, s.point.values, s.point.measured) for s in serial.steps] == [(s.purpose, s.parameter, s.point.values, s.point.measured) for s in parallel.steps]
+
+
+def test_every_point_is_told_once():
+	told = []
+	outcome, bench = calibrate(power_laws, tell=told.append)
+	assert told == outcome.steps
+	assert [step.number for step in told] == list(range(1, len(told) + 1))
+	assert len({tuple(step.point.values.items()) for step in told}) == len(told) == bench.ran
+	assert told[0].purpose == "start" and {step.parameter for step in told if step.purpose == "sensitivity"} == {"E", "C"}
+
+
+@pytest.mark.parametrize("make, message", [
+	(lambda: Parameter("E", 0, 1, 2), "positive and finite"),
+	(lambda: Parameter("E", 3, 1, 2), "the start, 3, must lie between the bounds, 1 and 2"),
+	(lambda: Parameter("E", 1, 2, 1), "lower bound, 2, must be below"),
+	(lambda: Parameter("E", 1, 1, math.inf), "positive and finite"),
+	(lambda: Target("ucs", -60e6, 0.02), "target ucs = -60000000.0 must be positive"),
+	(lambda: Target("ucs", 60e6, 2), "0.02 for 2 %"),
+	(lambda: Calibration([], TARGETS, None), "at least one parameter"),
+	(lambda: Calibration([STIFFNESS, STIFFNESS], TARGETS, None), "given twice"),
+	(lambda: Calibration([STIFFNESS], TARGETS, None, step=0), "step = 0"),
+	(lambda: calibrate(proportional, targets=[Target("hardness", 1, 0.1)]), "nothing measures the target hardness; there are young, ucs"),
+])
+def test_bad_input(make, message):
+	with pytest.raises(ValueError, match=message):
+		make()
+
+
+# ---- quantities ----
+
+
+def test_start_by_scaling_laws_keeps_ratios_of_moduli():
+	material = {"young": 80e9, "poisson": 0.2, "bulk": 44e9, "shear": 33e9, "strength": 140e6, "friction": 0.66, "fractureEnergy": 80e3}
+	start = starts("deformable", {"young": 40e9, "ucs": 50e6}, material)
+	assert (start["young"], start["bulk"], start["shear"]) == (40e9, 22e9, 16.5e9)
+	assert start["strength"] == 100e6
+	assert start["friction"] == 0.66
+
+
+def test_what_is_tuned_when_nobody_says():
+	assert usual("rigid", {"young": 1, "ucs": 1}) == ["young", "cohesion"]
+	assert usual("rigid", {"ucs": 1, "tensile": 1}) == ["cohesion", "bondFrictionAngle"]
+	assert usual("deformable", {"tensile": 1}) == ["strength"]
+
+
+@pytest.mark.parametrize("model, names, message", [
+	("rigid", ["youngs"], "'youngs' cannot be tuned in the rigid model; there are young"), ("deformable", ["young", "bulk"], "say the same twice"),
+	("rigid", ["tensileStrength"], "tensileStrength has no finite value to start from")
+])
+def test_parameters_that_cannot_be_tuned(model, names, message):
+	start = {name: 1.0 for name in TUNABLES[model]}
+	start["tensileStrength"] = math.inf
+	with pytest.raises(ValueError, match=message):
+		parameters(model, names, start)
+
+
+def test_bounds():
+	made = parameters("rigid", ["cohesion", "bondFrictionAngle"], {"cohesion": 40e6, "bondFrictionAngle": 0.7}, {"cohesion": (10e6, 90e6)})
+	assert (made[0].lower, made[0].upper) == (10e6, 90e6)
+	assert (math.degrees(made[1].lower), math.degrees(made[1].upper)) == (5, pytest.approx(75))
