@@ -12,7 +12,7 @@ void BondedEnergy::find(EnergyTracker& book)
 	const std::lock_guard<std::mutex> lock(mutex);
 	if (owner.load(std::memory_order_relaxed) == &book) return;
 	static const std::array<std::pair<const char*, bool>, EntryCount> entries {
-		{ { "bondElastic", true }, { "contactElastic", true }, { "wallElastic", true }, { "bondBroken", false }, { "friction", false } }
+		{ { "bondElastic", true }, { "contactElastic", true }, { "wallElastic", true }, { "bondBroken", false }, { "friction", false }, { "contactDamping", false } }
 	};
 	for (size_t i = 0; i < EntryCount; i++) {
 		ids[i] = -1;

@@ -46,6 +46,8 @@ void BondedMat::validate() const
 	        "Pa",
 	        "must be positive (infinite: the cut-off is cohesion/tan(bondFrictionAngle))");
 	require(frictionDynamic >= 0 && std::isfinite(frictionDynamic), *this, "frictionDynamic", frictionDynamic, "[-]", "must not be negative");
+	for (const auto& [name, value] : { std::make_pair("normalDamping", normalDamping), std::make_pair("shearDamping", shearDamping) })
+		require(value >= 0 && std::isfinite(value), *this, name, value, "[-]", "must not be negative");
 	require(frictionStatic >= frictionDynamic && std::isfinite(frictionStatic),
 	        *this,
 	        "frictionStatic",

@@ -4,21 +4,32 @@
 
 #include <pkg/bonded/BondedMat.hpp>
 
+#include <atomic>
+
 namespace yade {
 
 class BondedPhys : public NormShearPhys {
 public:
 	virtual ~BondedPhys() = default;
 
-	/// Joins the two particles as they are now, free of load. \param branch from the centre of particle 1 to that of 2 [m]
+	/// Joins the two particles as they are now. \param branch from the centre of particle 1 to that of 2 [m]
 	void join(const State& state1, const State& state2, const Vector3r& branch);
-	/// Leaves a frictional contact in place of the bond.
-	void part();
+	/// Leaves a frictional contact in place of the bond. \param reach distance of the centres below which it acts [m]
+	void part(Real reach);
 	/// Springs of the contact for its present reach.
 	void setContactStiffness();
 
-	ddem::BondElasticity elasticity() const { return { young, poisson }; }
-	ddem::MohrCoulomb    strength() const { return { cohesion, tanBondFriction, tensileStrength }; }
+	ddem::BondElasticity  elasticity() const { return { young, poisson }; }
+	ddem::MohrCoulomb     strength() const { return { cohesion, tanBondFriction, tensileStrength }; }
+	ddem::ContactFriction friction() const { return { frictionStatic, frictionDynamic, gradualFriction }; }
+	/// The bond as the kernel knows it. \param geom gives the radii of its particles
+	ddem::Bond bond(const ScGeom& geom) const;
+	/// Coefficients of viscous damping of the contact between particles of these masses [kg].
+	ddem::ContactDamping contactDamping(Real mass1, Real mass2) const;
+
+	/// Grows whenever a bond is made anywhere, so that lists of bonds know when they are out of date.
+	static std::atomic<long> bondsMade;
+	void                     postLoad(BondedPhys&) { bondsMade++; }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BondedPhys, NormShearPhys,
@@ -40,8 +51,15 @@ public:
 		((Real,contactReach,0,Attr::readonly,"Distance of the centres below which the contact acts [m]: the sum of the radii, or less where particles were bonded with an overlap"))
 		((Quaternionr,frame1,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),"The bond's frame in the axes of particle 1"))
 		((Quaternionr,frame2,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),"The bond's frame in the axes of particle 2"))
+		((bool,gradualFriction,false,Attr::readonly,"Whether the tangential force of the contact grows gradually"))
+		((Real,normalDamping,0,Attr::readonly,"Normal damping of the contact, part of the critical one [-]"))
+		((Real,shearDamping,0,Attr::readonly,"Tangential damping of the contact, part of the critical one [-]"))
 		((Vector3r,contactNormal,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Normal of the contact in the last step"))
-		((Vector3r,contactShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Force of the contact's tangential spring in the last step [N]"))
+		((Vector3r,contactShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Force that a linear tangential spring of the contact had in the last step [N]"))
+		((Real,contactForce,0,(Attr::readonly|Attr::hidden),"Force of the contact's tangential spring in the last step [N]"))
+		((Real,contactEnergy,0,(Attr::readonly|Attr::hidden),"Energy of the contact's tangential spring [J]"))
+		((Real,viscousNormal,0,(Attr::readonly|Attr::hidden),"Normal damping force of the contact in the last step [N]"))
+		((Vector3r,viscousShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Tangential damping force of the contact in the last step [N]"))
 		((Real,normalStress,0,Attr::readonly,"Largest normal stress of the bond's section, tension positive: :math:`F_n/A + |M_b|R/I` [Pa]"))
 		((Real,shearStress,0,Attr::readonly,"Largest shear stress of the bond's section: :math:`|F_s|/A + |M_t|R/J` [Pa]")),
 		createIndex();

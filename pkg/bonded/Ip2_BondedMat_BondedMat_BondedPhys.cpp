@@ -21,6 +21,9 @@ namespace {
 		phys->tensileStrength = math::min(a.tensileStrength, b.tensileStrength);
 		phys->frictionStatic  = math::min(a.frictionStatic, b.frictionStatic);
 		phys->frictionDynamic = math::min(a.frictionDynamic, b.frictionDynamic);
+		phys->gradualFriction = a.gradualFriction || b.gradualFriction;
+		phys->normalDamping   = (a.normalDamping + b.normalDamping) / 2;
+		phys->shearDamping    = (a.shearDamping + b.shearDamping) / 2;
 		phys->contactReach    = radius1 + radius2;
 		phys->setContactStiffness();
 		return phys;

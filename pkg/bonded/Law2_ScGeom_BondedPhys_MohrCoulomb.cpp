@@ -1,9 +1,12 @@
 // GPL v2 or later, see LICENSE.
 // The law of bonded particles: elastic bond, Mohr-Coulomb failure, frictional contact.
+#include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/ElasticWall.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 #include <pkg/ddem/kernel/BondStableStep.hpp>
 #include <pkg/ddem/kernel/BondWall.hpp>
+#include <pkg/ddem/kernel/EigenSpace.hpp>
+#include <pkg/ddem/kernel/EsysContact.hpp>
 
 namespace yade {
 
@@ -12,71 +15,112 @@ DDEM_PLUGIN((Law2_ScGeom_BondedPhys_MohrCoulomb))
 namespace {
 
 	/// Work per time of loads of a pair [W], with the velocities of the last half step.
-	template <class Loads> Real pairPower(const Loads& loads, const State& state1, const State& state2)
+	Real pairPower(const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2, const State& state1, const State& state2)
 	{
-		return loads.force.dot(state1.vel - state2.vel) + loads.moment1.dot(state1.angVel) + loads.moment2.dot(state2.angVel);
-	}
-
-	ddem::ContactLoads advanceContact(const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch, Real dt)
-	{
-		const Real                distance = branch.norm(), share = phys.contactReach / (geom.radius1 + geom.radius2);
-		const Vector3r            normal = branch / distance;
-		const ddem::ContactMotion motion { normal,        distance,     share * geom.radius1, share * geom.radius2, state2.vel - state1.vel,
-			                           state1.angVel, state2.angVel };
-		ddem::ContactMemory       memory { phys.contactNormal, phys.contactShear, phys.sliding };
-		const ddem::ContactLoads  loads = ddem::contactLoads({ phys.kn, phys.ks }, { phys.frictionStatic, phys.frictionDynamic }, motion, dt, memory);
-		phys.contactNormal              = memory.normal;
-		phys.contactShear               = memory.shear;
-		phys.sliding                    = memory.sliding;
-		phys.normalForce                = -loads.force.dot(normal) * normal;
-		phys.shearForce                 = -loads.force - phys.normalForce;
-		return loads;
+		return force.dot(state1.vel - state2.vel) + moment1.dot(state1.angVel) + moment2.dot(state2.angVel);
 	}
 
 } // namespace
 
+void Law2_ScGeom_BondedPhys_MohrCoulomb::postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&)
+{
+	if (convention != "consistent" && convention != "esys")
+		throw std::invalid_argument("Law2_ScGeom_BondedPhys_MohrCoulomb: convention = '" + convention + "' is unknown; use 'consistent' or 'esys'");
+	esys = convention == "esys";
+}
+
+Vector3r Law2_ScGeom_BondedPhys_MohrCoulomb::branchOf(const Interaction& I) const
+{
+	const Vector3r branch = Body::byId(I.getId2(), scene)->state->pos - Body::byId(I.getId1(), scene)->state->pos;
+	return scene->isPeriodic ? Vector3r(branch + scene->cell->intrShiftPos(I.cellDist)) : branch;
+}
+
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
-	const auto&  geom   = static_cast<const ScGeom&>(*iGeom);
-	auto&        phys   = static_cast<BondedPhys&>(*iPhys);
-	const State &state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
-	Vector3r     branch = state2.pos - state1.pos;
-	if (scene->isPeriodic) branch += scene->cell->intrShiftPos(I->cellDist);
-	if (!phys.bonded) {
-		const ddem::ContactLoads loads = advanceContact(geom, phys, state1, state2, branch, scene->dt);
-		return applyContact(*I, loads);
+	auto& phys = static_cast<BondedPhys&>(*iPhys);
+	if (!phys.bonded) return advanceContact(*I);
+	if (leaveBonds) return true;
+	if (esys) { // ESyS-Particle tests the loads of the last step
+		const ddem::BondStress last { phys.normalStress, phys.shearStress };
+		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return breakBond(*I, last);
 	}
+	const State &          state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
+	const ddem::BondLoads  loads  = ddem::bondLoads(
+                bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branchOf(*I)), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+	const ddem::BondStress stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
+	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None) return breakBond(*I, stress);
 
-	const ddem::Bond        bond { { phys.kn, phys.ks, phys.kb, phys.kt }, phys.bondLength, phys.frame1, phys.frame2 };
-	const ddem::BondLoads   loads  = ddem::bondLoads(bond, branch, state1.ori, state2.ori);
-	const ddem::BondStress  stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
-	const ddem::BondFailure mode   = ddem::bondFailure(phys.strength(), stress);
-	if (mode != ddem::BondFailure::None) {
-		phys.part();
-		const ddem::ContactLoads contact = advanceContact(geom, phys, state1, state2, branch, scene->dt);
-
-		auto parted          = boost::make_shared<BrokenBond>();
-		parted->id1          = std::min(I->getId1(), I->getId2());
-		parted->id2          = std::max(I->getId1(), I->getId2());
-		parted->pos          = state1.pos + branch / 2;
-		parted->normal       = loads.axis;
-		parted->radius       = phys.bondRadius;
-		parted->tension      = mode == ddem::BondFailure::Tension;
-		parted->normalStress = stress.normal;
-		parted->shearStress  = stress.shear;
-		// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the motion, so the jump of the loads counts half.
-		parted->energy = loads.energy - contact.energy - contact.dissipated
-		        + 0.5 * scene->dt * (pairPower(loads, state1, state2) - pairPower(contact, state1, state2));
-		record(parted);
-		return applyContact(*I, contact);
-	}
-	phys.normalForce  = -loads.section.force.x() * loads.axis;
-	phys.shearForce   = -loads.force - phys.normalForce;
-	phys.normalStress = stress.normal;
-	phys.shearStress  = stress.shear;
-	applyLoads(*I, loads.force, loads.moment1, loads.moment2);
-	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::BondElastic, loads.energy);
+	const Vector3r force = ddem::eigenVector(loads.force);
+	phys.normalForce     = -loads.section.force.x * ddem::eigenVector(loads.axis);
+	phys.shearForce      = -force - phys.normalForce;
+	phys.normalStress    = stress.normal;
+	phys.shearStress     = stress.shear;
+	applyLoads(*I, force, ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2));
+	if (scene->trackEnergy) bookBondEnergy(loads.energy);
 	return true;
+}
+
+bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::BondStress& stress)
+{
+	const auto&           geom   = static_cast<const ScGeom&>(*I.geom);
+	auto&                 phys   = static_cast<BondedPhys&>(*I.phys);
+	const State &         state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
+	const Vector3r        branch = branchOf(I);
+	const ddem::BondLoads loads
+	        = ddem::bondLoads(bondConvention(), phys.bond(geom), ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+	const Real touching = geom.radius1 + geom.radius2;
+	// Where particles were bonded with an overlap it bears no load, before and after the bond breaks; ESyS-Particle's rest length is always the sum of the radii.
+	phys.part(esys ? touching : math::min(touching, phys.bondLength));
+	const ddem::ContactLoads contact = contactLoadsOf(geom, phys, state1, state2, branch);
+
+	auto parted          = boost::make_shared<BrokenBond>();
+	parted->id1          = std::min(I.getId1(), I.getId2());
+	parted->id2          = std::max(I.getId1(), I.getId2());
+	parted->pos          = state1.pos + branch / 2;
+	parted->normal       = ddem::eigenVector(loads.axis);
+	parted->radius       = phys.bondRadius;
+	parted->tension      = ddem::failureMode(phys.strength(), stress) == ddem::BondFailure::Tension;
+	parted->normalStress = stress.normal;
+	parted->shearStress  = stress.shear;
+	// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the motion, so the jump of the loads counts half.
+	const Real bondPower = pairPower(ddem::eigenVector(loads.force), ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2), state1, state2);
+	const Real contactPower = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2);
+	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped + 0.5 * scene->dt * (bondPower - contactPower);
+	record(parted);
+	return applyContact(I, contact);
+}
+
+ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
+        const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch) const
+{
+	const Real                distance = branch.norm(), share = phys.contactReach / (geom.radius1 + geom.radius2);
+	const Vector3r            normal = branch / distance;
+	const ddem::ContactMotion motion { normal,        distance,     share * geom.radius1, share * geom.radius2, state2.vel - state1.vel,
+		                           state1.angVel, state2.angVel };
+	ddem::ContactMemory       memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
+                                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
+	const ddem::ContactLoads  loads = esys
+	         ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
+	         : ddem::contactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory, phys.contactDamping(state1.mass, state2.mass));
+	phys.contactNormal  = memory.normal;
+	phys.contactShear   = memory.shear;
+	phys.contactForce   = memory.force;
+	phys.contactEnergy  = memory.energy;
+	phys.sliding        = memory.sliding;
+	phys.viscousNormal  = memory.viscousNormal;
+	phys.viscousShear   = memory.viscousShear;
+	phys.normalForce    = -loads.force.dot(normal) * normal;
+	phys.shearForce     = -loads.force - phys.normalForce;
+	return loads;
+}
+
+bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
+{
+	auto& phys = static_cast<BondedPhys&>(*I.phys);
+	if (esys && (phys.gradualFriction || phys.normalDamping != 0 || phys.shearDamping != 0))
+		throw std::runtime_error("the convention 'esys' has neither gradual friction nor contact damping: reset gradualFriction, normalDamping and shearDamping of BondedMat");
+	const State &state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
+	return applyContact(I, contactLoadsOf(static_cast<const ScGeom&>(*I.geom), phys, state1, state2, branchOf(I)));
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)
@@ -89,13 +133,13 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const 
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
 {
-	if (!loads.touching) return false;
-	applyLoads(I, loads.force, loads.moment1, loads.moment2);
+	if (loads.touching) applyLoads(I, loads.force, loads.moment1, loads.moment2);
 	if (scene->trackEnergy) {
 		energy.add(*scene->energy, BondedEnergy::ContactElastic, loads.energy);
 		energy.add(*scene->energy, BondedEnergy::Friction, loads.dissipated);
+		if (loads.damped != 0) energy.add(*scene->energy, BondedEnergy::ContactDamping, loads.damped);
 	}
-	return true;
+	return loads.touching;
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bond)
@@ -124,8 +168,11 @@ boost::python::list Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds() const
 
 boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 {
+	const auto current = Omega::instance().getScene();
+	for (const auto& engine : current->engines)
+		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
 	std::map<std::pair<int, int>, const BondedPhys*> holding;
-	for (const auto& I : *Omega::instance().getScene()->interactions) {
+	for (const auto& I : *current->interactions) {
 		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
 		if (phys && phys->bonded) holding[std::minmax(I->getId1(), I->getId2())] = phys;
 	}
@@ -150,7 +197,7 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 	const Scene&                                     scene = *Omega::instance().getScene();
 	std::vector<int>                                 place(scene.bodies->size(), -1); // bodies that cannot move stay -1
 	std::vector<ddem::ParticleMass>                  particles;
-	std::vector<ddem::PairSpring>                    springs;
+	std::vector<ddem::PairSpring>                    springs, dampers;
 	std::vector<std::pair<const Wall*, const Body*>> walls;
 	for (const auto& body : *scene.bodies) {
 		if (!body) continue;
@@ -166,6 +213,10 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 		const Real       share = phys->contactReach / (geom.radius1 + geom.radius2);
 		ddem::PairSpring spring { place[size_t(I->getId1())], place[size_t(I->getId2())], phys->kn, phys->ks, 0, 0,
 			                  share * geom.radius1,       share * geom.radius2 };
+		if (phys->normalDamping > 0 || phys->shearDamping > 0) { // of the contact that is there or that a broken bond leaves
+			const auto damping = phys->contactDamping((*scene.bodies)[I->getId1()]->state->mass, (*scene.bodies)[I->getId2()]->state->mass);
+			dampers.push_back({ spring.first, spring.second, damping.normal, damping.shear, 0, 0, spring.arm1, spring.arm2 });
+		}
 		if (phys->bonded) {
 			spring.bending = phys->kb;
 			spring.torsion = phys->kt;
@@ -183,7 +234,7 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 			springs.push_back({ place[size_t(body->id)], -1, ddem::wallSpring(sphere->radius, material->stiffness), 0, 0, 0, 0, 0 });
 		}
 	}
-	return ddem::stableStep(particles, springs);
+	return ddem::dampedStableStep(ddem::stableStep(particles, springs), ddem::stableStep(particles, dampers));
 }
 
 } // namespace yade

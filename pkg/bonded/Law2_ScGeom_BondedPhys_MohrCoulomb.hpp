@@ -5,6 +5,7 @@
 #include <pkg/bonded/BondedEnergy.hpp>
 #include <pkg/bonded/BondedPhys.hpp>
 #include <pkg/bonded/BrokenBond.hpp>
+#include <pkg/ddem/kernel/BondSystem.hpp>
 
 #include <mutex>
 
@@ -14,6 +15,14 @@ class Law2_ScGeom_BondedPhys_MohrCoulomb : public LawFunctor {
 public:
 	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
 	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
+
+	ddem::BondConvention bondConvention() const { return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent; }
+	bool leaveBonds = false; ///< set while a BondedInteractionLoop, which computes bonds itself, runs the functors
+	/// Replaces a bond that has failed under these stresses by a contact, which acts at once, and records it. \returns whether the two touch
+	bool breakBond(Interaction& I, const ddem::BondStress& stress);
+	/// Adds stored energy to the book.
+	void bookBondEnergy(Real stored) { energy.add(*scene->energy, BondedEnergy::BondElastic, stored); }
+	void postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&);
 
 	boost::python::list brokenBonds() const;
 	long                brokenCount() const { return long(broken.size()); }
@@ -30,11 +39,15 @@ public:
 		"integration point. They derive from an energy, so the bond is exactly conservative, for unequal radii and large rotations too. The rest length is :math:`d_0`.\n\n"
 		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the "
 		"tension limit (see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
+		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending "
+		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii, failure one step later, friction that sticks again after every slip.\n\n"
 		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond that breaks under compression keeps "
-		"its normal force; its tangential force starts from zero.\n\n"
-		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction* (dissipated) [J].\n\n"
+		"its normal force; its tangential force starts from zero. Gradual friction and viscous damping are options of :yref:`BondedMat`.\n\n"
+		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* (dissipated) [J].\n\n"
+		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast as one by one in an :yref:`InteractionLoop`.\n\n"
 		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as well, its relative rotations are not used.\n\n"
 		"**Saving.** Bonds and the list of broken bonds are saved with the scene. **Limits:** no periodic boundaries for bonds.",
+		((std::string,convention,"consistent",Attr::triggerPostLoad,"'consistent', or 'esys' for the bonds and contacts of ESyS-Particle; to be chosen before the first step"))
 		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),"Records of broken bonds, in order of step and ids")),
 		/*ctor*/,
 		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
@@ -47,11 +60,16 @@ public:
 	// clang-format on
 
 private:
+	/// One step of the contact that a pair has instead of a bond. \returns whether the two touch
+	bool advanceContact(Interaction& I);
+	ddem::ContactLoads contactLoadsOf(const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch) const;
+	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	/// Whether the two still touch.
 	bool applyContact(const Interaction& I, const ddem::ContactLoads& loads);
 	void record(const shared_ptr<BrokenBond>& bond);
 
+	bool         esys = false;
 	BondedEnergy energy;
 	std::mutex   recording;
 };

@@ -14,7 +14,7 @@ void RampedTranslationEngine::postLoad(RampedTranslationEngine&)
 
 Real RampedTranslationEngine::speed(Real time) const
 {
-	const Real since = time - startTime;
+	const Real since = time - startTime + (ahead ? Omega::instance().getScene()->dt : 0);
 	if (!(since >= 0)) return 0;
 	return since < rampTime ? velocity * since / rampTime : velocity;
 }

@@ -25,6 +25,7 @@ public:
 		":yref:`NewtonIntegrator.mask` leaves out, whose own engine books it.\n\nErrors: ValueError for a negative rampTime.",
 		((Real,rampTime,0,Attr::triggerPostLoad,"Time over which the speed grows [s]; 0: full speed at once"))
 		((Real,startTime,NaN,,"Time at which the motion starts [s]; NaN: at the engine's first step"))
+		((bool,ahead,false,,"Whether the bodies are a step ahead: in each step they reach the place that they would otherwise have at its end before forces act, as the walls of ESyS-Particle do"))
 		((Real,work,0,Attr::readonly,"Work done on the rest of the scene so far [J], booked while energy is tracked"))
 		((int,workIx,-1,(Attr::hidden|Attr::noSave),"Place of externalWork in the energy tracker")),
 		/*ctor*/ translationAxis = Vector3r(0,1,0); velocity = 0;,

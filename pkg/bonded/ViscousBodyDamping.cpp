@@ -46,7 +46,7 @@ const NewtonIntegrator& ViscousBodyDamping::checkedIntegrator() const
 	bool seen = false;
 	for (const auto& engine : scene->engines) {
 		if (engine.get() == this) seen = true;
-		else if (seen && engine->getClassName() == "InteractionLoop")
+		else if (seen && dynamic_cast<const InteractionLoop*>(engine.get()))
 			throw std::runtime_error("wrong order in O.engines: ViscousBodyDamping comes before InteractionLoop and would miss its forces; put it "
 			                         "right before NewtonIntegrator");
 		else if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(engine.get())) {

@@ -2,6 +2,7 @@
 #include <pkg/ddem/DeformableEngine.hpp>
 
 #include <pkg/ddem/DeformableNode.hpp>
+#include <pkg/ddem/Onlookers.hpp>
 
 #include <boost/python/numpy.hpp>
 
@@ -19,7 +20,6 @@ namespace {
 
 	constexpr int  stateVersion   = 1;
 	constexpr long boundInterval  = 50; ///< steps between checks of the time step against the equation of state
-	constexpr auto longestUnseen  = std::chrono::milliseconds(200); ///< State is no older than this for other threads while a run goes on
 
 	/// Engines that neither look at deformable bodies nor add forces to them.
 	bool isQuiet(const Engine& engine)
@@ -33,16 +33,6 @@ namespace {
 	{
 		static const std::set<std::string> names { "ForceEngine", "TorqueEngine" };
 		return isQuiet(engine) || names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine);
-	}
-
-	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides; early by `slack` of real time rather than late.
-	bool isDue(const PeriodicEngine& e, long iter, Real time, Real slack)
-	{
-		if (e.firstIterRun > 0 && e.nDone == 0) return e.firstIterRun == iter;
-		const long done = iter < e.iterLast ? 0 : e.nDone;
-		const bool due  = (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod) || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
-		        || (e.iterPeriod > 0 && iter - e.iterLast >= e.iterPeriod);
-		return ((e.nDo < 0 || done < e.nDo) && due) || (done == 0 && e.initRun);
 	}
 
 	std::string placeOf(const Body& b)
@@ -249,34 +239,13 @@ void DeformableEngine::action()
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
-	exposed = somebodyMayLook();
+	exposed = somebodyMayLook(*scene, *this, lastExposure, neverLooks);
 	if (exposed) {
 		assembly.exposeAll();
 		if (scene->forces.lastReset == scene->iter) assembly.exposeReactions(scene->forces);
 		lastExposure = std::chrono::steady_clock::now();
 	} else
 		assembly.exposeConstrained();
-}
-
-bool DeformableEngine::somebodyMayLook() const
-{
-	const long next = scene->iter + 1;
-	const Real then = scene->time + scene->dt;
-	if (!Omega::instance().isRunning()) return true; // O.step, or a pause was asked for
-	if (scene->stopAtIter > 0 && next >= scene->stopAtIter) return true;
-	if (scene->stopAtTime > 0 && then >= scene->stopAtTime * (1 - 1e-12)) return true;
-	if (std::chrono::steady_clock::now() - lastExposure > longestUnseen) return true;
-	bool before = true; // engines before this one act next in the next step
-	for (const auto& e : scene->engines) {
-		if (e.get() == this) {
-			before = false;
-			continue;
-		}
-		if (e->dead || neverLooks(*e)) continue;
-		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
-		if (!periodic || isDue(*periodic, before ? next : scene->iter, before ? then : scene->time, 0.01)) return true;
-	}
-	return false;
 }
 
 void DeformableEngine::stopAtNotFinite()

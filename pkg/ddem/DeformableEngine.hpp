@@ -74,7 +74,6 @@ private:
 	ddem::RotationTreatment rotationTreatment() const;
 	void                    checkEngines();
 	void                    checkTimeStep();
-	bool                    somebodyMayLook() const;
 	CarriedState            stateToCarry(const Scene&) const;
 	void                    maskIntegrators(const Scene&) const;
 	void                    checkDrivenNodes() const;

@@ -20,6 +20,7 @@
 #include <core/GlobalEngine.hpp>
 #include <core/IGeom.hpp>
 #include <core/IPhys.hpp>
+#include <core/InteractionLoop.hpp>
 #include <core/Material.hpp>
 #include <core/Omega.hpp>
 #include <core/PartialEngine.hpp>

@@ -11,7 +11,7 @@ Crush a prism of bonded spheres::
 	O.engines = [
 		ForceResetter(),
 		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
-		InteractionLoop(
+		BondedInteractionLoop(
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
 			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
 			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
@@ -31,12 +31,14 @@ import math
 import numpy as np
 
 from yade import (
-	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedMat, ElasticWallMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat, ElasticWallMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
 	NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils)
 
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
 DEFAULT_GAP = 0.0025
+
+_GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bonded to it (tutorial of ESyS-Particle)
 
 _BROKEN = np.dtype([
 	("id1", int), ("id2", int), ("step", int), ("time", float), ("position", float, 3), ("normal", float, 3), ("radius", float), ("mode", "U7"),
@@ -44,17 +46,20 @@ _BROKEN = np.dtype([
 ])
 
 
-def append(packing, material, gap=None, color=None):
+def append(packing, material, gap=None, color=None, mass_law="solid"):
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 
 	:param packing: :class:`packing.Packing`. One layer (:attr:`packing.Packing.flat`) stays in its plane: motion along z and rotation about x and y are blocked.
 	:param material: a :yref:`BondedMat` of O.materials, or its label.
 	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds, or 0.0025 of the largest radius where it has none.
 	:param color: of the spheres, three numbers from 0 to 1.
+	:param mass_law: "solid": density times volume, 4/3 pi r³; "cube": density times r³, the default of ESyS-Particle (with 1 g/mm³ = 1e6 kg/m³).
 	:returns: :class:`BondedSample`
-	:raises ValueError: unknown label, a material of another kind or with bad parameters, a negative gap, nothing to bond. Nothing is appended then.
+	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative gap, nothing to bond. Nothing is appended then.
 	"""
 	material = _material(material)
+	if mass_law not in ("solid", "cube"):
+		raise ValueError(f"mass_law = '{mass_law}' is unknown; use 'solid' (density times 4/3 pi r³) or 'cube' (density times r³)")
 	if gap is not None:
 		pairs = packing.neighbours(gap)
 	else:
@@ -64,6 +69,9 @@ def append(packing, material, gap=None, color=None):
 	spheres = []
 	for centre, radius in zip(packing.centres, packing.radii):
 		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
+		if mass_law == "cube":
+			body.state.mass = material.density * float(radius)**3
+			body.state.inertia = Vector3(1, 1, 1) * (0.4 * body.state.mass * float(radius)**2)
 		if packing.flat:
 			body.state.blockedDOFs = "zXY"
 		spheres.append(body)
@@ -160,27 +168,38 @@ class BondedSample:
 		return float(np.pi * (self.broken["radius"]**2).sum())
 
 
-def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True):
-	"""Set elastic walls below and above a sample and drive them towards each other along y.
+def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False, shear_stiffness=0.0):
+	"""Set elastic walls below and above a sample and drive them towards each other along y, or apart.
 
 	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face, and their area is that of the face.
-	:param velocity: speed of each wall [m/s], positive compresses.
+	:param velocity: speed of each wall [m/s], positive compresses, negative pulls (bonded walls only).
 	:param ramp: time over which the speed grows linearly from zero [s].
 	:param stiffness: of the walls, K [Pa]; a sphere of radius r feels the spring pi r K.
 	:param both: True: both walls move; False: the lower one stands still.
-	:returns: :class:`Platens`; put its ``engines`` into O.engines after InteractionLoop.
-	:raises ValueError: velocity zero or not finite, negative ramp, stiffness not positive. Nothing is appended then.
+	:param bonded: True: the spheres whose centre is within 1.1 of their radius from a wall are bonded to it, for good, and feel its spring in both directions.
+	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract. ESyS-Particle's NRotBondedWall has that of *stiffness*.
+	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
+	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not positive, no sphere at a wall that is to be bonded.
+		Nothing is appended then.
 	"""
 	if not math.isfinite(velocity) or velocity == 0:
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
-	if velocity < 0:
-		raise ValueError(f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses")
+	if velocity < 0 and not bonded:
+		raise ValueError(f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses, and bonded=True makes walls that pull")
 	if not (ramp >= 0 and math.isfinite(ramp)):
 		raise ValueError(f"ramp = {ramp} s must not be negative")
-	material = ElasticWallMat(stiffness=stiffness)
+	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
+	held = []
+	if bonded:
+		heights, reach = sample.positions[:, 1], _GLUED * sample.radii
+		held = [sample.ids[abs(heights - face) < reach].tolist() for face in (sample.lower[1], sample.upper[1])]
+		if not all(held):
+			raise ValueError(f"no sphere is within {_GLUED} radii of the {'upper' if held[0] else 'lower'} face of the sample: nothing to bond the wall to")
 	O.materials.append(material)
 	bottom, top = (utils.wall(float(face), axis=1, sense=sense, material=material) for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1)))
 	bottom, top = O.bodies.append([bottom, top])
+	for wall, spheres in zip((bottom, top), held):
+		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
 	return Platens(sample, bottom, top, velocity, ramp, both)
 
 
@@ -217,22 +236,26 @@ class Platens:
 		return 1 - (O.bodies[self.top].state.pos[1] - O.bodies[self.bottom].state.pos[1]) / self.height
 
 
-def engines(platens=None, viscosity=0.0, rotational_viscosity=None):
+def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="consistent"):
 	"""The engines of a bonded scene in their order; append recorders to the list.
 
 	:param platens: :class:`Platens` whose motion is included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
+	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle 2.3.5, to compare with it, see
+		:yref:`Law2_ScGeom_BondedPhys_MohrCoulomb`.
 	"""
+	for engine in platens.engines if platens else ():
+		engine.ahead = convention == "esys"
 	rotational = viscosity if rotational_viscosity is None else rotational_viscosity
 	damping = [ViscousBodyDamping(viscosity=viscosity, rotationalViscosity=rotational, label="bodyDamping")] if viscosity or rotational else []
 	return [
 		ForceResetter(),
 		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], label="collider"),
-		InteractionLoop(
+		BondedInteractionLoop(
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
 			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
+			[Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention), Law2_ScGeom_ElasticWallPhys_Repulsion()],
 			label="interactions",
 		),
 		*(platens.engines if platens else []),
@@ -259,7 +282,7 @@ def check():
 	:raises RuntimeError: an engine is missing or in the wrong place.
 	:raises ValueError: a material was changed to bad parameters, or O.dt is above the critical step.
 	"""
-	names = [type(e).__name__ for e in O.engines]
+	names = ["InteractionLoop" if isinstance(e, InteractionLoop) else type(e).__name__ for e in O.engines]
 	for name, purpose in (
 		("ForceResetter", "forces would add up"), ("InsertionSortCollider", "fragments would pass through each other"), ("InteractionLoop", "bonds would bear no load"),
 		("NewtonIntegrator", "nothing would move")

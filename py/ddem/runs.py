@@ -16,7 +16,7 @@ ENERGY_PARTS = {
 	"damage": ("damage", ),
 	"broken bonds": ("bondBroken", ),
 	"friction": ("friction", ),
-	"damping": ("bodyDamping", "nonviscDamp"),
+	"damping": ("bodyDamping", "nonviscDamp", "contactDamping"),
 }
 RECORDER = "recorder"  #: label of the engine that keeps the record
 EXTERNAL = ("externalWork", "gravWork")  #: what came in from outside, booked with a minus sign

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// What the bond's mathematics costs, without YADE around it.
-#include <pkg/ddem/kernel/BondStrength.hpp>
+// What the bonds' mathematics costs, without YADE around it.
+#include "bond_samples.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -8,37 +8,37 @@
 
 namespace {
 
-using namespace yade::ddem;
+using namespace bond_samples;
 
-void bondWithFailureCheck(benchmark::State& state)
+/// Particles of a chain, each bonded to the next three, slightly out of place; one thread sees what a sample of this size costs per bond.
+void allBonds(benchmark::State& state, BondConvention convention)
 {
-	const BondSection                      section(1e-3);
-	const BondStiffness                    stiffness = bondStiffness({ 100e9, 0.25 }, section, 2e-3);
+	const auto                             particles = static_cast<std::int32_t>(state.range(0));
 	std::mt19937_64                        engine(1);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             vector = [&] { return Eigen::Vector3d(unit(engine), unit(engine), unit(engine)); };
-	struct Sample {
-		Bond               bond;
-		Eigen::Vector3d    branch;
-		Eigen::Quaterniond orientation1, orientation2;
-	};
-	std::vector<Sample> samples;
-	for (int i = 0; i < 1000; i++) {
-		const Eigen::Vector3d branch = 2e-3 * vector().normalized();
-		const auto            turned = [&] { return Eigen::Quaterniond(Eigen::AngleAxisd(1e-3, vector().normalized())); };
-		samples.push_back({ makeBond(stiffness, branch, Eigen::Quaterniond::Identity(), Eigen::Quaterniond::Identity()),
-		                    branch + 1e-6 * vector(),
-		                    turned(),
-		                    turned() });
-	}
-	for (auto _ : state)
-		for (const Sample& s : samples) {
-			BondLoads loads = bondLoads(s.bond, s.branch, s.orientation1, s.orientation2);
-			benchmark::DoNotOptimize(bondFailure({ 1e12, 1 }, bondStress(section, loads.section)));
-			benchmark::DoNotOptimize(loads);
+	const auto                             vector = [&] { return Vector(unit(engine), unit(engine), unit(engine)); };
+	BondSystem                             system;
+	for (std::int32_t i = 0; i < particles; i++)
+		for (std::int32_t j = i + 1; j < std::min(i + 4, particles); j++) {
+			const Vector        branch(2e-3 * (j - i), 0, 0);
+			const BondStiffness stiffness = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
+			system.add(i, j, join(stiffness, branch, Quaternion::Identity(), Quaternion::Identity()), { 1e15, 1 });
 		}
-	state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(samples.size()));
+	system.assemble(std::size_t(particles));
+	for (std::int32_t i = 0; i < particles; i++) {
+		const Vector     x = Vector(2e-3 * i, 0, 0) + 1e-6 * vector();
+		const Quaternion q(Eigen::AngleAxisd(1e-3, vector().normalized()));
+		const double     pose[8] = { x.x(), x.y(), x.z(), 0, q.w(), q.x(), q.y(), q.z() };
+		std::copy_n(pose, 8, system.pose.begin() + 8 * i);
+	}
+	std::vector<std::int32_t> overloaded;
+	for (auto _ : state) {
+		benchmark::DoNotOptimize(system.step(convention, false, overloaded));
+		benchmark::ClobberMemory();
+	}
+	state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(system.size()));
 }
-BENCHMARK(bondWithFailureCheck);
+BENCHMARK_CAPTURE(allBonds, consistent, BondConvention::Consistent)->Arg(1000)->Arg(30000);
+BENCHMARK_CAPTURE(allBonds, esys, BondConvention::Esys)->Arg(1000)->Arg(30000);
 
 } // namespace

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
 // The elastic bond: closed forms, exact derivatives of one energy, momentum, objectivity.
-#include <pkg/ddem/kernel/BondLaw.hpp>
+#include "bond_samples.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,7 @@
 
 namespace {
 
-using namespace yade::ddem;
-using Vector     = Eigen::Vector3d;
-using Quaternion = Eigen::Quaterniond;
+using namespace bond_samples;
 
 constexpr double     young = 100e9, poisson = 0.25, shearModulus = 40e9;
 const BondElasticity cement { young, poisson };
@@ -28,10 +26,10 @@ protected:
 	static constexpr double radius = 1e-3, length = 2e-3;
 	const BondSection       section { radius };
 	const BondStiffness     stiffness = bondStiffness(cement, section, length);
-	const Bond              bond      = makeBond(stiffness, { length, 0, 0 }, Quaternion::Identity(), Quaternion::Identity());
+	const Bond              bond      = join(stiffness, { length, 0, 0 }, Quaternion::Identity(), Quaternion::Identity());
 	Pose                    one, two { { length, 0, 0 }, Quaternion::Identity() };
 
-	BondLoads loads() const { return bondLoads(bond, two.position - one.position, one.orientation, two.orientation); }
+	Loads loads() const { return loadsOf(bond, two.position - one.position, one.orientation, two.orientation); }
 };
 
 /// Bonds of any direction and orientation, particles displaced and turned up to `amplitude` of length and radian.
@@ -48,9 +46,9 @@ protected:
 		pose.position += amplitude * 1e-3 * vector();
 		pose.orientation = turn(amplitude * unit(engine), vector()) * pose.orientation;
 	}
-	static BondLoads loads(const Bond& bond, const Pose& a, const Pose& b)
+	static Loads loads(const Bond& bond, const Pose& a, const Pose& b)
 	{
-		return bondLoads(bond, b.position - a.position, a.orientation, b.orientation);
+		return loadsOf(bond, b.position - a.position, a.orientation, b.orientation);
 	}
 };
 
@@ -66,7 +64,7 @@ TEST(BondStiffness, followsFromRadiusWhenParticlesTouch) // d0 = 2R: kn = πER/2
 
 TEST_F(StraightBond, isFreeOfLoadAtFirst)
 {
-	const BondLoads l = loads();
+	const Loads l = loads();
 	EXPECT_EQ(l.energy, 0);
 	EXPECT_EQ(l.force, Vector::Zero());
 	EXPECT_EQ(l.moment1, Vector::Zero());
@@ -76,16 +74,16 @@ TEST_F(StraightBond, isFreeOfLoadAtFirst)
 TEST_F(StraightBond, stretches)
 {
 	two.position.x() += 2e-6;
-	const BondLoads l = loads();
+	const Loads l = loads();
 	EXPECT_NEAR(l.force.x(), stiffness.normal * 2e-6, 1e-9 * l.force.x());
-	EXPECT_NEAR(l.section.force.x(), l.force.x(), 1e-12 * l.force.x()); // tension positive
+	EXPECT_NEAR(l.section.force.x, l.force.x(), 1e-12 * l.force.x()); // tension positive
 	EXPECT_NEAR(l.energy, 0.5 * stiffness.normal * 4e-12, 1e-9 * l.energy);
 }
 
 TEST_F(StraightBond, shearsAndBalancesItsCoupleOnBothEnds)
 {
 	two.position.y() += 2e-6;
-	const BondLoads l = loads();
+	const Loads l = loads();
 	EXPECT_NEAR(l.force.y(), stiffness.shear * 2e-6, 1e-12 * l.force.y());
 	EXPECT_NEAR(l.force.x(), 0, 1e-9 * l.force.y());
 	EXPECT_NEAR(l.moment1.z(), l.force.y() * length / 2, 1e-12);
@@ -97,7 +95,7 @@ TEST_F(StraightBond, bendsWithFullEIOverLengthAtAnyAngle)
 	for (double angle : { 1e-9, 0.004, 0.5, 2. }) {
 		one.orientation   = turn(-angle / 2, Vector::UnitZ());
 		two.orientation   = turn(angle / 2, Vector::UnitZ());
-		const BondLoads l = loads();
+		const Loads l = loads();
 		EXPECT_NEAR(l.moment1.z(), stiffness.bending * angle, 1e-12 * stiffness.bending * angle) << angle;
 		EXPECT_NEAR(l.moment2.z(), -stiffness.bending * angle, 1e-12 * stiffness.bending * angle) << angle;
 		EXPECT_NEAR(l.energy, 0.5 * stiffness.bending * angle * angle, 1e-12 * l.energy) << angle;
@@ -110,7 +108,7 @@ TEST_F(StraightBond, twistsWithGJOverLengthAtAnyAngle)
 {
 	for (double angle : { 1e-9, 0.005, 0.5, 3. }) {
 		two.orientation   = turn(angle, Vector::UnitX());
-		const BondLoads l = loads();
+		const Loads l = loads();
 		EXPECT_NEAR(l.moment1.x(), stiffness.torsion * angle, 1e-12 * stiffness.torsion * angle) << angle;
 		EXPECT_NEAR(l.moment2.x(), -stiffness.torsion * angle, 1e-12 * stiffness.torsion * angle) << angle;
 		EXPECT_NEAR(l.force.norm(), 0, 1e-12 * stiffness.normal * length);
@@ -121,7 +119,7 @@ TEST_F(StraightBond, shearsWhenOneParticleTurns) // to first order Fs = -ks (d0/
 {
 	const double angle    = 1e-6;
 	two.orientation       = turn(angle, Vector::UnitZ());
-	const BondLoads l     = loads();
+	const Loads l     = loads();
 	const double    shear = stiffness.shear * angle * length / 2;
 	EXPECT_NEAR(l.force.y(), -shear, 1e-6 * shear);
 	EXPECT_NEAR(l.moment1.z(), -shear * length / 2 + stiffness.bending * angle, 1e-6 * stiffness.bending * angle);
@@ -139,7 +137,7 @@ TEST_F(StraightBond, doesNotCareForTheSignOfAQuaternion)
 {
 	two.position.y() += 1e-6;
 	two.orientation       = turn(0.01, { 1, 2, 3 });
-	const BondLoads plain = loads();
+	const Loads plain = loads();
 	two.orientation.coeffs() *= -1;
 	EXPECT_EQ(loads().moment1, plain.moment1);
 	EXPECT_EQ(loads().force, plain.force);
@@ -149,7 +147,7 @@ TEST(HalfAngle, seriesAndArcTangentMeet)
 {
 	for (double squared : { 1e-3 * (1 - 1e-12), 1e-3 }) {
 		const double    sine = std::sqrt(squared);
-		const HalfAngle h    = halfAngle(std::sqrt(1 - squared), squared);
+		const HalfAngle<double> h    = halfAngle(std::sqrt(1 - squared), squared);
 		EXPECT_NEAR(h.factor, std::asin(sine) / sine, 1e-15);
 		EXPECT_NEAR(h.complement, (1 - std::asin(sine) / sine) / squared, 1e-12);
 	}
@@ -160,10 +158,10 @@ TEST_F(RandomBond, loadsAreTheDerivativesOfTheEnergy)
 	const double step = 1e-6; // of length in mm and of angle in rad
 	for (int trial = 0; trial < 50; trial++) {
 		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
-		const Bond bond = makeBond(stiffness, b.position - a.position, a.orientation, b.orientation);
+		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 0.7);
 		disturb(b, 0.7);
-		const BondLoads l     = loads(bond, a, b);
+		const Loads l     = loads(bond, a, b);
 		const double    scale = stiffness.normal * 1e-3;
 		for (int axis = 0; axis < 3; axis++) {
 			const Vector direction = Vector::Unit(axis);
@@ -192,10 +190,10 @@ TEST_F(RandomBond, conservesAngularMomentum)
 {
 	for (int trial = 0; trial < 1000; trial++) {
 		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
-		const Bond bond = makeBond(stiffness, b.position - a.position, a.orientation, b.orientation);
+		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 1);
 		disturb(b, 1);
-		const BondLoads l   = loads(bond, a, b);
+		const Loads l   = loads(bond, a, b);
 		const Vector    sum = l.moment1 + l.moment2 - (b.position - a.position).cross(l.force);
 		EXPECT_LT(sum.norm(), 1e-15 * (l.moment1.norm() + l.moment2.norm() + l.force.norm() * 1e-1));
 	}
@@ -205,17 +203,17 @@ TEST_F(RandomBond, isObjective)
 {
 	for (int trial = 0; trial < 200; trial++) {
 		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
-		const Bond bond = makeBond(stiffness, b.position - a.position, a.orientation, b.orientation);
+		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 0.5);
 		disturb(b, 0.5);
-		const BondLoads  before = loads(bond, a, b);
+		const Loads  before = loads(bond, a, b);
 		const Quaternion spin   = orientation();
 		const Vector     shift  = vector();
 		for (Pose* p : { &a, &b }) {
 			p->position    = spin * p->position + 1e-3 * shift;
 			p->orientation = spin * p->orientation;
 		}
-		const BondLoads after = loads(bond, a, b);
+		const Loads after = loads(bond, a, b);
 		const double    scale = stiffness.normal * 1e-3;
 		EXPECT_LT((after.force - spin * before.force).norm(), 1e-12 * scale);
 		EXPECT_LT((after.moment1 - spin * before.moment1).norm(), 1e-12 * scale * 1e-3);
@@ -229,7 +227,7 @@ TEST_F(RandomBond, doesNoWorkOnClosedPaths) // both particles go round loops of 
 	const int steps = 400;
 	for (int trial = 0; trial < 10; trial++) {
 		const Pose   a0 { Vector::Zero(), orientation() }, b0 { 2e-3 * vector().normalized(), orientation() };
-		const Bond   bond = makeBond(stiffness, b0.position, a0.orientation, b0.orientation);
+		const Bond   bond = join(stiffness, b0.position, a0.orientation, b0.orientation);
 		const Vector s1 = vector(), s2 = vector(), s3 = vector(), s4 = vector(), u1 = vector(), u2 = vector(), u3 = vector(), u4 = vector();
 		const auto   at = [&](double t) {
                         Pose a = a0, b = b0;
@@ -246,7 +244,7 @@ TEST_F(RandomBond, doesNoWorkOnClosedPaths) // both particles go round loops of 
 			const auto [a, b]     = at(i * h);
 			const auto [am, bm]   = at((i - 1e-3) * h);
 			const auto [ap, bp]   = at((i + 1e-3) * h);
-			const BondLoads l     = loads(bond, a, b);
+			const Loads l     = loads(bond, a, b);
 			const double    power = (l.force.dot((ap.position - am.position) - (bp.position - bm.position))
                                               + l.moment1.dot(rate(am.orientation, ap.orientation)) + l.moment2.dot(rate(bm.orientation, bp.orientation)))
 			        / 2e-3;

@@ -1,6 +1,7 @@
 // GPL v2 or later, see LICENSE.
 // The bound on the time step against eigenvalues of whole systems.
-#include <pkg/ddem/kernel/BondLaw.hpp>
+#include "bond_samples.hpp"
+
 #include <pkg/ddem/kernel/BondStableStep.hpp>
 
 #include <Eigen/Eigenvalues>
@@ -10,10 +11,8 @@
 
 namespace {
 
-using namespace yade::ddem;
-using Vector     = Eigen::Vector3d;
-using Quaternion = Eigen::Quaterniond;
-using Matrix     = Eigen::MatrixXd;
+using namespace bond_samples;
+using Matrix = Eigen::MatrixXd;
 
 PairSpring bondSpring(int first, int second, const BondStiffness& k, double length)
 {
@@ -56,7 +55,7 @@ assembledStiffness(const std::vector<Eigen::Vector3d>& centres, const std::vecto
 					if (unknown < 3) x[side][unknown] += delta * size;
 					else
 						q[side] = Quaternion(Eigen::AngleAxisd(delta, Vector::Unit(unknown - 3)));
-					const BondLoads l = bondLoads(bonds[b], x[1] - x[0], q[0], q[1]);
+					const Loads l = loadsOf(bonds[b], x[1] - x[0], q[0], q[1]);
 					loads[sign].resize(12);
 					loads[sign] << l.force, l.moment1, -l.force, l.moment2;
 				}
@@ -91,7 +90,7 @@ TEST(StableStep, boundsWholePackingsClosely)
 				if (branch.norm() > 3e-3) continue;
 				const BondStiffness k = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
 				pairs.emplace_back(i, j);
-				bonds.push_back(makeBond(k, branch, Quaternion::Identity(), Quaternion::Identity()));
+				bonds.push_back(join(k, branch, Quaternion::Identity(), Quaternion::Identity()));
 				springs.push_back(bondSpring(i, j, k, branch.norm()));
 			}
 		Matrix          stiffness = assembledStiffness(centres, pairs, bonds, 1e-3);

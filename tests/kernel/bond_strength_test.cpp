@@ -7,8 +7,9 @@
 namespace {
 
 using namespace yade::ddem;
-using Vector     = Eigen::Vector3d;
-using Quaternion = Eigen::Quaterniond;
+using Vector = SpaceVector<double>;
+
+const Vector zero { 0, 0, 0 };
 
 const BondSection section { 1e-3 };
 
@@ -17,16 +18,16 @@ BondStress stress(const Vector& force, const Vector& moment) { return bondStress
 TEST(BondStress, ofEachLoadAlone) // |Mb| R/I = 4 |Mb|/(πR³), |Mt| R/J = 2 |Mt|/(πR³)
 {
 	const double area = M_PI * 1e-6, cube = M_PI * 1e-9;
-	EXPECT_DOUBLE_EQ(stress({ -5, 0, 0 }, Vector::Zero()).normal, -5 / area);
-	EXPECT_DOUBLE_EQ(stress({ 0, 3, 4 }, Vector::Zero()).shear, 5 / area);
-	EXPECT_DOUBLE_EQ(stress(Vector::Zero(), { 0, -3e-3, 4e-3 }).normal, 4 * 5e-3 / cube);
-	EXPECT_DOUBLE_EQ(stress(Vector::Zero(), { -5e-3, 0, 0 }).shear, 2 * 5e-3 / cube);
+	EXPECT_DOUBLE_EQ(stress({ -5, 0, 0 }, zero).normal, -5 / area);
+	EXPECT_DOUBLE_EQ(stress({ 0, 3, 4 }, zero).shear, 5 / area);
+	EXPECT_DOUBLE_EQ(stress(zero, { 0, -3e-3, 4e-3 }).normal, 4 * 5e-3 / cube);
+	EXPECT_DOUBLE_EQ(stress(zero, { -5e-3, 0, 0 }).shear, 2 * 5e-3 / cube);
 }
 
 TEST(BondStress, bendingAddsTensionEvenUnderCompression)
 {
 	const BondStress s = stress({ -5, 0, 0 }, { 0, 1e-3, 0 });
-	EXPECT_DOUBLE_EQ(s.normal, stress({ -5, 0, 0 }, Vector::Zero()).normal + stress(Vector::Zero(), { 0, 1e-3, 0 }).normal);
+	EXPECT_DOUBLE_EQ(s.normal, stress({ -5, 0, 0 }, zero).normal + stress(zero, { 0, 1e-3, 0 }).normal);
 	EXPECT_EQ(s.shear, 0);
 }
 

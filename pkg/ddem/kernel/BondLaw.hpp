@@ -15,117 +15,117 @@
 #pragma once
 
 #include <pkg/ddem/kernel/BondSection.hpp>
-
-#include <Eigen/Geometry>
+#include <pkg/ddem/kernel/Select.hpp>
+#include <pkg/ddem/kernel/SpaceVector.hpp>
 
 namespace yade::ddem {
 
-/// What a bond remembers of the moment it was made.
-struct Bond {
-	BondStiffness      stiffness;
-	double             length; ///< d0 [m]
-	Eigen::Quaterniond frame1; ///< the bond's frame in the axes of particle 1, first axis from particle 1 to 2
-	Eigen::Quaterniond frame2; ///< the same frame in the axes of particle 2
+/// What a bond remembers of the moment it was made, frames in the axes of its particles.
+template <class Number> struct BondOf {
+	BondStiffnessOf<Number> stiffness;
+	Number                  length;           ///< d0 [m]
+	Number                  radius1, radius2; ///< of the particles [m]
+	Rotation<Number>        frame1;           ///< the bond's frame in the axes of particle 1, first axis from particle 1 to 2
+	Rotation<Number>        frame2;           ///< the same frame in the axes of particle 2
 };
+using Bond = BondOf<double>;
 
 /// Loads of the cross-section in the middle of the bond, along its axes; the first is the bond's own. Tension positive.
-struct BondResultants {
-	Eigen::Vector3d force;  ///< normal force, two shear forces [N]
-	Eigen::Vector3d moment; ///< torsion, two bending moments [N·m]
+template <class Number> struct BondResultantsOf {
+	SpaceVector<Number> force;  ///< normal force, two shear forces [N]
+	SpaceVector<Number> moment; ///< torsion, two bending moments [N·m]
 };
+using BondResultants = BondResultantsOf<double>;
 
 /// What the bond does to its particles. The force on particle 2 is -force.
-struct BondLoads {
-	Eigen::Vector3d force;   ///< on particle 1 [N]
-	Eigen::Vector3d moment1; ///< on particle 1, about its centre [N·m]
-	Eigen::Vector3d moment2; ///< on particle 2, about its centre [N·m]
-	Eigen::Vector3d axis;    ///< the bond's direction, first axis of the middle frame [-]
-	BondResultants  section;
-	double          energy; ///< stored [J]
+template <class Number> struct BondLoadsOf {
+	SpaceVector<Number>      force;   ///< on particle 1 [N]
+	SpaceVector<Number>      moment1; ///< on particle 1, about its centre [N·m]
+	SpaceVector<Number>      moment2; ///< on particle 2, about its centre [N·m]
+	SpaceVector<Number>      axis;    ///< the bond's direction [-]
+	BondResultantsOf<Number> section;
+	Number                   energy; ///< stored [J]
 };
+using BondLoads = BondLoadsOf<double>;
+
+/// The shortest rotation that takes the x axis into a direction. \param direction unit vector
+inline Rotation<double> rotationFromX(const SpaceVector<double>& direction)
+{
+	const double cosine = direction.x, half = std::sqrt(0.5 * (1 + cosine));
+	if (half < 1e-8) return { 0, 0, 0, 1 }; // half a turn about z
+	return { half, 0, -direction.z / (2 * half), direction.y / (2 * half) };
+}
 
 /// A bond without load between particles at rest in these orientations. \param branch x2 - x1 [m], not zero
-inline Bond
-makeBond(const BondStiffness& stiffness, const Eigen::Vector3d& branch, const Eigen::Quaterniond& orientation1, const Eigen::Quaterniond& orientation2)
+inline Bond makeBond(
+        const BondStiffness&       stiffness,
+        double                     radius1,
+        double                     radius2,
+        const SpaceVector<double>& branch,
+        const Rotation<double>&    orientation1,
+        const Rotation<double>&    orientation2)
 {
-	const Eigen::Quaterniond frame = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitX(), branch);
-	return { stiffness, branch.norm(), orientation1.conjugate() * frame, orientation2.conjugate() * frame };
+	const double           length = norm(branch);
+	const Rotation<double> frame  = rotationFromX((1 / length) * branch);
+	return { stiffness, length, radius1, radius2, inverse(orientation1) * frame, inverse(orientation2) * frame };
 }
 
 /// Factors that turn the vector part v of a unit quaternion into its rotation vector: θ = 2 f v with f = asin|v|/|v|, and (1 - f)/|v|² for its derivative.
-struct HalfAngle {
-	double factor;     ///< f
-	double complement; ///< (1 - f)/|v|²
+template <class Number> struct HalfAngle {
+	Number factor;     ///< f
+	Number complement; ///< (1 - f)/|v|²
 };
 
 /// \param scalar scalar part of the quaternion, not negative \param squared |v|²
-inline HalfAngle halfAngle(double scalar, double squared)
+template <class Number> inline HalfAngle<Number> halfAngle(const Number& scalar, const Number& squared)
 {
-	if (squared < 1e-3) { // the series is exact to the last digit here, and needs no special case at zero
-		const double complement = -(1. / 6 + squared * (3. / 40 + squared * (15. / 336 + squared * (105. / 3456 + squared * 945. / 42240))));
-		return { 1 - squared * complement, complement };
-	}
-	const double sine = std::sqrt(squared), factor = std::atan2(sine, scalar) / sine;
-	return { factor, (1 - factor) / squared };
-}
-
-/// a b. Inlined by force: compilers see too many calls of it to do so, and three calls a bond show in the time of a whole step.
-[[gnu::always_inline]] inline Eigen::Quaterniond product(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b)
-{
-	return Eigen::Quaterniond(
-	        a.w() * b.w() - a.x() * b.x() - a.y() * b.y() - a.z() * b.z(),
-	        a.w() * b.x() + a.x() * b.w() + a.y() * b.z() - a.z() * b.y(),
-	        a.w() * b.y() + a.y() * b.w() + a.z() * b.x() - a.x() * b.z(),
-	        a.w() * b.z() + a.z() * b.w() + a.x() * b.y() - a.y() * b.x());
-}
-
-/// Matrix of the rotation half way between two unit quaternions less than π apart: that of their sum, whose length need not be one.
-inline Eigen::Matrix3d rotationBetween(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b)
-{
-	const double    w = a.w() + b.w(), x = a.x() + b.x(), y = a.y() + b.y(), z = a.z() + b.z();
-	const double    s = 2 / (w * w + x * x + y * y + z * z), sx = s * x, sy = s * y, sz = s * z;
-	Eigen::Matrix3d matrix;
-	matrix << 1 - (y * sy + z * sz), x * sy - w * sz, x * sz + w * sy, //
-	        x * sy + w * sz, 1 - (x * sx + z * sz), y * sz - w * sx,   //
-	        x * sz - w * sy, y * sz + w * sx, 1 - (x * sx + y * sy);
-	return matrix;
+	using std::atan2;
+	using std::sqrt;
+	// The series is exact to the last digit below 1e-3, and needs no special case at zero.
+	const Number series     = -(1. / 6 + squared * (3. / 40 + squared * (15. / 336 + squared * (105. / 3456 + squared * 945. / 42240))));
+	const auto   large      = squared > Number(1e-3);
+	HalfAngle<Number> small = { 1. - squared * series, series };
+	if (!any(large)) return small;
+	const Number sine = sqrt(select(large, squared, Number(1.))), factor = atan2(sine, scalar) / sine;
+	return { select(large, factor, small.factor), select(large, (1. - factor) / squared, small.complement) };
 }
 
 /** Loads of a bond.
  * \param branch x2 - x1 [m]
  * \param orientation1,orientation2 unit quaternions, body to world
  */
-inline BondLoads bondLoads(const Bond& bond, const Eigen::Vector3d& branch, const Eigen::Quaterniond& orientation1, const Eigen::Quaterniond& orientation2)
+template <class Number>
+inline BondLoadsOf<Number>
+bondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, const Rotation<Number>& orientation1, const Rotation<Number>& orientation2)
 {
-	const Eigen::Quaterniond end1 = product(orientation1, bond.frame1);
-	Eigen::Quaterniond       end2 = product(orientation2, bond.frame2);
-	if (end1.dot(end2) < 0) end2.coeffs() = -end2.coeffs(); // the shorter of the two rotations between them
-	const Eigen::Quaterniond relative = product(end1.conjugate(), end2);
-	const Eigen::Vector3d    v        = relative.vec();
-	const Eigen::Matrix3d    axes     = rotationBetween(end1, end2); // columns: the bond's axes in the world
+	const Rotation<Number> end1 = orientation1 * bond.frame1, other = orientation2 * bond.frame2;
+	// the shorter of the two rotations between the ends
+	const Number              sign     = select(dot(end1, other) < Number(0.), Number(-1.), Number(1.));
+	const Rotation<Number>    end2     = sign * other;
+	const Rotation<Number>    relative = inverse(end1) * end2;
+	const SpaceVector<Number> v        = relative.vector();
+	const Axes<Number>        middle   = axesOf(end1 + end2); // the bond's axes: the sum of two quaternions is, but for its length, the rotation half way between
 
-	const Eigen::Vector3d local = axes.transpose() * branch;
-	const HalfAngle       half  = halfAngle(relative.w(), v.squaredNorm());
-	const Eigen::Vector3d stretch(local.x() - bond.length, local.y(), local.z());
-	const Eigen::Vector3d rotation = 2 * half.factor * v;
+	const SpaceVector<Number> local = middle.components(branch);
+	const HalfAngle<Number>   half  = halfAngle(relative.w, dot(v, v));
+	const SpaceVector<Number> stretch { local.x - bond.length, local.y, local.z };
+	const SpaceVector<Number> rotation = (2. * half.factor) * v;
 
-	const BondStiffness& k = bond.stiffness;
-	BondLoads            loads;
-	Eigen::Vector3d&     force  = loads.section.force;
-	Eigen::Vector3d&     moment = loads.section.moment;
-	force << k.normal * stretch.x(), k.shear * stretch.y(), k.shear * stretch.z();
-	moment << k.torsion * rotation.x(), k.bending * rotation.y(), k.bending * rotation.z();
-	loads.energy = 0.5 * (force.dot(stretch) + moment.dot(rotation));
+	const BondStiffnessOf<Number>& k = bond.stiffness;
+	BondLoadsOf<Number>            loads;
+	loads.section.force  = { k.normal * stretch.x, k.shear * stretch.y, k.shear * stretch.z };
+	loads.section.moment = { k.torsion * rotation.x, k.bending * rotation.y, k.bending * rotation.z };
+	loads.energy         = 0.5 * (dot(loads.section.force, stretch) + dot(loads.section.moment, rotation));
 
 	// δU = force·δΓ + moment·δθ. With spins w1, w2 of the ends, in the middle frame: δθ = v v·w (1 - f)/|v|² + f w for w = w2 - w1, and the middle frame
 	// spins with ½(w1 + w2) - ½ g × (w2 - w1), g = v/(1 + scalar) = tan(θ/4) along the axis.
-	const Eigen::Vector3d conjugate = half.factor * moment + half.complement * moment.dot(v) * v;
-	const Eigen::Vector3d couple    = 0.5 * local.cross(force);
-	const Eigen::Vector3d swing     = couple.cross(v) / (1 + relative.w()) + conjugate;
-	loads.force                     = axes * force;
-	loads.moment1                   = axes * (couple + swing);
-	loads.moment2                   = axes * (couple - swing);
-	loads.axis                      = axes.col(0);
+	const SpaceVector<Number> conjugate = half.factor * loads.section.moment + (half.complement * dot(loads.section.moment, v)) * v;
+	const SpaceVector<Number> couple    = Number(0.5) * cross(local, loads.section.force);
+	const SpaceVector<Number> swing     = (1. / (1. + relative.w)) * cross(couple, v) + conjugate;
+	loads.force                         = middle.vector(loads.section.force);
+	loads.moment1                       = middle.vector(couple + swing);
+	loads.moment2                       = middle.vector(couple - swing);
+	loads.axis                          = middle.first;
 	return loads;
 }
 

@@ -14,33 +14,35 @@ struct BondElasticity {
 };
 
 /// Round cross-section of radius R.
-struct BondSection {
-	explicit BondSection(double bondRadius)
+template <class Number> struct BondSectionOf {
+	explicit BondSectionOf(const Number& bondRadius)
 	        : radius(bondRadius)
 	        , area(M_PI * bondRadius * bondRadius)
-	        , inertia(area * bondRadius * bondRadius / 4)
-	        , polarInertia(2 * inertia)
-	        , bendingModulus(inertia / bondRadius)
-	        , torsionModulus(polarInertia / bondRadius)
+	        , inertia(0.25 * area * bondRadius * bondRadius)
+	        , polarInertia(2. * inertia)
+	        , bendingModulus(0.25 * area * bondRadius)
+	        , torsionModulus(0.5 * area * bondRadius)
 	{
 	}
-	double radius;         ///< R [m]
-	double area;           ///< A = π R² [m²]
-	double inertia;        ///< I = π R⁴/4 [m⁴]
-	double polarInertia;   ///< J = π R⁴/2 [m⁴]
-	double bendingModulus; ///< I/R = π R³/4: moment per stress at the rim [m³]
-	double torsionModulus; ///< J/R = π R³/2 [m³]
+	Number radius;         ///< R [m]
+	Number area;           ///< A = π R² [m²]
+	Number inertia;        ///< I = π R⁴/4 [m⁴]
+	Number polarInertia;   ///< J = π R⁴/2 [m⁴]
+	Number bendingModulus; ///< I/R = π R³/4: moment per stress at the rim [m³]
+	Number torsionModulus; ///< J/R = π R³/2 [m³]
 };
+using BondSection = BondSectionOf<double>;
 
 /** Stiffnesses of a bond, loads per relative motion of its ends.
  * Normal, shear and torsion as in ESyS-Particle's BrittleBeam (Weatherley et al., ESyS-Particle tutorial); bending is the full E I/d0 of beam theory.
  */
-struct BondStiffness {
-	double normal;  ///< E A/d0 [N/m]
-	double shear;   ///< G A/d0 [N/m]
-	double bending; ///< E I/d0 [N·m/rad]
-	double torsion; ///< G J/d0 [N·m/rad]
+template <class Number> struct BondStiffnessOf {
+	Number normal;  ///< E A/d0 [N/m]
+	Number shear;   ///< G A/d0 [N/m]
+	Number bending; ///< E I/d0 [N·m/rad]
+	Number torsion; ///< G J/d0 [N·m/rad]
 };
+using BondStiffness = BondStiffnessOf<double>;
 
 /// \param length distance d0 of the particles' centres when the bond was made [m]
 inline BondStiffness bondStiffness(const BondElasticity& elasticity, const BondSection& section, double length)

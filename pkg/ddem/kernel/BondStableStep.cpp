@@ -67,4 +67,11 @@ double stableStep(const std::vector<ParticleMass>& particles, const std::vector<
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 
+double dampedStableStep(double undamped, double ofDampers)
+{
+	if (!std::isfinite(ofDampers)) return undamped;
+	const double rate = 4 / (ofDampers * ofDampers), squared = 4 / (undamped * undamped);
+	return (std::sqrt(rate * rate + 4 * squared) - rate) / squared;
+}
+
 } // namespace yade::ddem

@@ -28,4 +28,10 @@ struct ParticleMass {
  */
 double stableStep(const std::vector<ParticleMass>& particles, const std::vector<PairSpring>& springs);
 
+/** Longest stable step with viscous dampers, whose forces leapfrog takes from the velocities of the last half step [s]: h² ω² + 2 h λ ≤ 4, λ the highest damping rate.
+ * \param undamped stableStep of the springs
+ * \param ofDampers stableStep of the dampers, coefficients in place of stiffnesses: 2/√λ; infinity without
+ */
+double dampedStableStep(double undamped, double ofDampers);
+
 } // namespace yade::ddem

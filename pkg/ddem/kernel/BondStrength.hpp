@@ -4,6 +4,7 @@
 
 #include <pkg/ddem/kernel/BondLaw.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace yade::ddem {
@@ -17,10 +18,11 @@ struct MohrCoulomb {
 };
 
 /// Largest stresses at the rim of the cross-section in the middle of the bond.
-struct BondStress {
-	double normal; ///< σ = N/A + |M_b| R/I [Pa], tension positive; bending always adds tension somewhere on the rim
-	double shear;  ///< τ = |F_s|/A + |M_t| R/J [Pa]
+template <class Number> struct BondStressOf {
+	Number normal; ///< σ = N/A + |M_b| R/I [Pa], tension positive; bending always adds tension somewhere on the rim
+	Number shear;  ///< τ = |F_s|/A + |M_t| R/J [Pa]
 };
+using BondStress = BondStressOf<double>;
 
 /// How a bond broke.
 enum class BondFailure {
@@ -29,19 +31,32 @@ enum class BondFailure {
 	Shear
 };
 
-inline BondStress bondStress(const BondSection& section, const BondResultants& load)
+template <class Number> inline BondStressOf<Number> bondStress(const BondSectionOf<Number>& section, const BondResultantsOf<Number>& load)
 {
-	const double bending = load.moment.tail<2>().norm(), shear = load.force.tail<2>().norm();
-	return { load.force.x() / section.area + bending / section.bendingModulus, shear / section.area + std::abs(load.moment.x()) / section.torsionModulus };
+	using std::abs;
+	using std::sqrt;
+	const Number bending = sqrt(load.moment.y * load.moment.y + load.moment.z * load.moment.z),
+	             shear   = sqrt(load.force.y * load.force.y + load.force.z * load.force.z);
+	return { load.force.x / section.area + bending / section.bendingModulus, shear / section.area + abs(load.moment.x) / section.torsionModulus };
 }
 
-/// There is no limit in pure compression, as in ESyS-Particle. Both criteria meet at the apex, so without a lower cut-off the larger share names the mode.
+/// How far a bond is beyond its strength [Pa]; it breaks above zero. There is no limit in pure compression, as in ESyS-Particle.
+template <class Number>
+inline Number bondOverload(const Number& cohesion, const Number& frictionCoefficient, const Number& tensionLimit, const BondStressOf<Number>& stress)
+{
+	const Number tension = stress.normal - tensionLimit, shear = stress.shear - (cohesion - stress.normal * frictionCoefficient);
+	return select(tension > shear, tension, shear);
+}
+
+/// The mode of a bond that breaks. Both criteria meet at the apex, so without a lower cut-off the larger share names it.
+inline BondFailure failureMode(const MohrCoulomb& strength, const BondStress& stress)
+{
+	return stress.normal > strength.tensionLimit() || stress.normal * strength.frictionCoefficient > stress.shear ? BondFailure::Tension : BondFailure::Shear;
+}
+
 inline BondFailure bondFailure(const MohrCoulomb& strength, const BondStress& stress)
 {
-	if (stress.normal > strength.tensionLimit()) return BondFailure::Tension;
-	const double tensionShare = stress.normal * strength.frictionCoefficient;
-	if (stress.shear > strength.cohesion - tensionShare) return tensionShare > stress.shear ? BondFailure::Tension : BondFailure::Shear;
-	return BondFailure::None;
+	return bondOverload(strength.cohesion, strength.frictionCoefficient, strength.tensionLimit(), stress) > 0 ? failureMode(strength, stress) : BondFailure::None;
 }
 
 } // namespace yade::ddem

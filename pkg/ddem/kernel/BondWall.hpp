@@ -2,7 +2,7 @@
 // Elastic repulsion of a particle by a wall.
 #pragma once
 
-#include <cmath>
+#include <pkg/ddem/kernel/SpaceVector.hpp>
 
 namespace yade::ddem {
 
@@ -15,6 +15,17 @@ inline double wallSpring(double radius, double wallStiffness) { return M_PI * ra
 inline double wallRepulsion(double radius, double wallStiffness, double distance)
 {
 	return distance < radius ? wallSpring(radius, wallStiffness) * (radius - distance) : 0.;
+}
+
+/** Force on a sphere that is bonded to a wall, -π r (K u_n + K_s u_t) of its displacement u relative to the wall since it was bonded. It acts at the centre and
+ * never breaks (ESyS-Particle's bonded walls; NRotBondedWall has K_s = K).
+ * \param normal unit normal of the wall
+ */
+inline SpaceVector<double>
+bondedWallForce(double radius, double wallStiffness, double shearStiffness, const SpaceVector<double>& displacement, const SpaceVector<double>& normal)
+{
+	const SpaceVector<double> across = dot(displacement, normal) * normal;
+	return -wallSpring(radius, wallStiffness) * across - wallSpring(radius, shearStiffness) * (displacement - across);
 }
 
 } // namespace yade::ddem

@@ -6,6 +6,7 @@
 
 #include <xsimd/xsimd.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,6 +28,10 @@ template <> struct Lanes<double> {
 	}
 	/// Points of the given indices.
 	static PlaneVector<double> gatherPoints(const double* from, const std::int32_t* index) { return loadPoints(from + 2 * std::ptrdiff_t(*index)); }
+	/// Four numbers of each of the given rows, which are `stride` numbers apart.
+	static void gatherRows(const double* from, std::ptrdiff_t stride, const std::int32_t* index, double (&to)[4]) { std::copy_n(from + stride * *index, 4, to); }
+	/// Four numbers of each of successive rows.
+	static void storeRows(double* to, std::ptrdiff_t, const double (&from)[4]) { std::copy_n(from, 4, to); }
 };
 
 #if defined(__AVX2__)
@@ -55,8 +60,30 @@ template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
 		const auto point = [=](int lane) { return _mm_loadu_pd(from + 2 * std::ptrdiff_t(index[lane])); };
 		return split(_mm256_set_m128d(point(2), point(0)), _mm256_set_m128d(point(3), point(1)));
 	}
+	static void gatherRows(const double* from, std::ptrdiff_t stride, const std::int32_t* index, Batch (&to)[4])
+	{
+		for (int lane = 0; lane < 4; lane++)
+			to[lane] = Batch(_mm256_loadu_pd(from + stride * index[lane]));
+		transpose(to);
+	}
+	static void storeRows(double* to, std::ptrdiff_t stride, const Batch (&from)[4])
+	{
+		Batch rows[4] = { from[0], from[1], from[2], from[3] };
+		transpose(rows);
+		for (int lane = 0; lane < 4; lane++)
+			_mm256_storeu_pd(to + lane * stride, rows[lane]);
+	}
 
 private:
+	static void transpose(Batch (&m)[4])
+	{
+		const __m256d a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]), c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
+		m[0] = Batch(_mm256_permute2f128_pd(a, c, 0x20));
+		m[1] = Batch(_mm256_permute2f128_pd(b, d, 0x20));
+		m[2] = Batch(_mm256_permute2f128_pd(a, c, 0x31));
+		m[3] = Batch(_mm256_permute2f128_pd(b, d, 0x31));
+	}
+
 	/// From points 0, 2 and points 1, 3.
 	static PlaneVector<Batch> split(__m256d even, __m256d odd) { return { Batch(_mm256_unpacklo_pd(even, odd)), Batch(_mm256_unpackhi_pd(even, odd)) }; }
 };

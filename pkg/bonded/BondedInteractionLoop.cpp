@@ -1,0 +1,268 @@
+// GPL v2 or later, see LICENSE.
+// An InteractionLoop that computes all bonds together.
+#include <pkg/bonded/BondedInteractionLoop.hpp>
+#include <pkg/bonded/ViscousBodyDamping.hpp>
+
+#include <pkg/ddem/Onlookers.hpp>
+#include <pkg/ddem/kernel/EigenSpace.hpp>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace yade {
+
+DDEM_PLUGIN((BondedInteractionLoop))
+
+namespace {
+
+	/// Engines that look at no bond.
+	bool neverLooksAtBonds(const Engine& engine)
+	{
+		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "ForceEngine", "TorqueEngine", "DeformableEngine" };
+		return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine) || dynamic_cast<const ViscousBodyDamping*>(&engine);
+	}
+
+} // namespace
+
+Law2_ScGeom_BondedPhys_MohrCoulomb* BondedInteractionLoop::law() const
+{
+	for (const auto& functor : lawDispatcher->functors)
+		if (auto* found = dynamic_cast<Law*>(functor.get())) return found;
+	return nullptr;
+}
+
+bool BondedInteractionLoop::oneByOne() const
+{
+	return !callbacks.empty() || scene->isPeriodic;
+}
+
+/// In place of the geometry functor of bonds, whose geometry nobody needs while they are computed together; else it passes calls on.
+class BondedInteractionLoop::GeometryGate : public IGeomFunctor {
+public:
+	shared_ptr<IGeomFunctor> real;
+	bool                     closed = false;
+
+	bool go(const shared_ptr<Shape>&       shape1,
+	        const shared_ptr<Shape>&       shape2,
+	        const State&                   state1,
+	        const State&                   state2,
+	        const Vector3r&                shift2,
+	        const bool&                    force,
+	        const shared_ptr<Interaction>& interaction) override
+	{
+		return closed || real->go(shape1, shape2, state1, state2, shift2, force, interaction);
+	}
+};
+
+BondedInteractionLoop::~BondedInteractionLoop() { release(); }
+
+void BondedInteractionLoop::release()
+{
+	for (const Held& h : held)
+		if (h.interaction && h.interaction->functorCache.geom == gate) h.interaction->functorCache.geom = nullptr; // the loop that comes next looks it up
+	held.clear();
+	known = -1;
+}
+
+void BondedInteractionLoop::action()
+{
+	Law* const bondLaw = law();
+	if (!bondLaw || oneByOne()) {
+		release();
+		InteractionLoop::action();
+		return;
+	}
+	if (!upToDate()) collect(*bondLaw);
+	struct Closed { // also when something is thrown
+		GeometryGate& gate;
+		Law&          law;
+		Closed(GeometryGate& g, Law& l)
+		        : gate(g)
+		        , law(l)
+		{
+			gate.closed = law.leaveBonds = true;
+		}
+		~Closed() { gate.closed = law.leaveBonds = false; }
+	};
+	if (gate) {
+		const Closed closed(*gate, *bondLaw);
+		InteractionLoop::action();
+	} else
+		InteractionLoop::action();
+	advance(*bondLaw);
+}
+
+bool BondedInteractionLoop::upToDate() const
+{
+	if (known != BondedPhys::bondsMade || knownScene != scene || 8 * broken > held.size()) return false;
+	auto& all = *scene->interactions;
+	return std::all_of(held.begin(), held.end(), [&all](const Held& h) {
+		if (!h.interaction) return true;
+		const auto place = size_t(h.interaction->linIx);
+		return place < all.size() && all[place] == h.interaction && h.interaction->phys.get() == h.phys;
+	});
+}
+
+void BondedInteractionLoop::collect(Law& bondLaw)
+{
+	expose();
+	release();
+	for (const auto& I : *scene->interactions) {
+		auto* phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
+		if (phys && phys->bonded) held.push_back({ I, phys });
+	}
+	// Interactions lie in an order that depends on the past; sums must not.
+	std::sort(held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
+
+	system.clear();
+	particles.clear();
+	overloaded.clear();
+	std::vector<std::int32_t> place(scene->bodies->size(), -1);
+	const auto                placeOf = [&](Body::id_t id) {
+                std::int32_t& p = place[size_t(id)];
+                if (p < 0) {
+                        p = std::int32_t(particles.size());
+                        particles.push_back(id);
+                }
+                return p;
+	};
+	for (size_t j = 0; j < held.size(); j++) {
+		const Interaction& I = *held[j].interaction;
+		const BondedPhys&  phys = *held[j].phys;
+		const std::int32_t first = placeOf(I.getId1()), second = placeOf(I.getId2());
+		system.add(first, second, phys.bond(static_cast<const ScGeom&>(*I.geom)), phys.strength());
+		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
+		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress }) != ddem::BondFailure::None)
+			overloaded.push_back(std::int32_t(j));
+	}
+	system.assemble(particles.size());
+	closeGate();
+	broken     = 0;
+	known      = BondedPhys::bondsMade;
+	knownScene = scene;
+	exposed    = true;
+}
+
+void BondedInteractionLoop::closeGate()
+{
+	if (held.empty()) return;
+	if (!gate) gate = boost::make_shared<GeometryGate>();
+	const Interaction& any  = *held.front().interaction;
+	bool               swap = false;
+	gate->real              = geomDispatcher->getFunctor2D((*scene->bodies)[any.getId1()]->shape, (*scene->bodies)[any.getId2()]->shape, swap);
+	if (!gate->real) throw std::runtime_error("the BondedInteractionLoop has no geometry functor for two spheres: give it Ig2_Sphere_Sphere_ScGeom()");
+	for (const Held& h : held)
+		h.interaction->functorCache.geom = gate;
+}
+
+void BondedInteractionLoop::fetchPoses()
+{
+	const long size = long(particles.size());
+#pragma omp parallel for schedule(static)
+	for (long p = 0; p < size; p++) {
+		const State&  state = *(*scene->bodies)[particles[size_t(p)]]->state;
+		double* const to    = system.pose.data() + 8 * p;
+		for (int axis = 0; axis < 3; axis++)
+			to[axis] = state.pos[axis];
+		to[4] = state.ori.w();
+		to[5] = state.ori.x();
+		to[6] = state.ori.y();
+		to[7] = state.ori.z();
+	}
+}
+
+void BondedInteractionLoop::advance(Law& bondLaw)
+{
+	const bool esys = bondLaw.bondConvention() == ddem::BondConvention::Esys;
+	fetchPoses();
+	if (esys) breakOverloaded(bondLaw, overloaded); // ESyS-Particle tests the loads of the last step
+	const Real stored = system.step(bondLaw.bondConvention(), scene->trackEnergy, overloaded);
+	exposed           = false;
+	for (const std::int32_t bond : overloaded) {
+		const auto& row = system.row(size_t(bond));
+		if (!std::isfinite(row.normalStress) || !std::isfinite(row.shearStress)) stopAtNotFinite(bond);
+	}
+	Real lost = 0;
+	if (!esys) {
+		for (const std::int32_t bond : overloaded)
+			lost += system.row(size_t(bond)).energy;
+		breakOverloaded(bondLaw, overloaded);
+	}
+	applyLoads();
+	if (scene->trackEnergy) bondLaw.bookBondEnergy(stored - lost);
+	if (somebodyMayLook(*scene, *this, lastExposure, neverLooksAtBonds)) {
+		expose();
+		lastExposure = std::chrono::steady_clock::now();
+	}
+}
+
+void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std::int32_t>& bonds)
+{
+	for (const std::int32_t bond : bonds) {
+		Held& h = held[size_t(bond)];
+		if (!h.interaction) continue;
+		const auto& row = system.row(size_t(bond));
+		const ddem::BondStress last = exposed ? ddem::BondStress { h.phys->normalStress, h.phys->shearStress } : ddem::BondStress { row.normalStress, row.shearStress };
+		exposeGeometry(size_t(bond));
+		if (!bondLaw.breakBond(*h.interaction, last)) scene->interactions->requestErase(h.interaction);
+		system.remove(size_t(bond));
+		h.interaction->functorCache.geom = nullptr;
+		h                                = {};
+		broken++;
+	}
+}
+
+void BondedInteractionLoop::applyLoads()
+{
+	const long size = long(particles.size());
+#pragma omp parallel for schedule(static)
+	for (long p = 0; p < size; p++) {
+		const double* const load = system.load.data() + 6 * p;
+		scene->forces.addForce(particles[size_t(p)], Vector3r(load[0], load[1], load[2]));
+		scene->forces.addTorque(particles[size_t(p)], Vector3r(load[3], load[4], load[5]));
+	}
+}
+
+void BondedInteractionLoop::expose()
+{
+	if (exposed) return;
+	exposed = true;
+	for (size_t j = 0; j < held.size(); j++) {
+		if (!held[j].interaction) continue;
+		exposeGeometry(j);
+		BondedPhys&    phys  = *held[j].phys;
+		const auto&    geom  = static_cast<const ScGeom&>(*held[j].interaction->geom);
+		const auto&    row   = system.row(j);
+		const Vector3r force = ddem::eigenVector(row.force);
+		phys.normalForce     = -force.dot(geom.normal) * geom.normal;
+		phys.shearForce      = -force - phys.normalForce;
+		phys.normalStress    = row.normalStress;
+		phys.shearStress     = row.shearStress;
+	}
+}
+
+void BondedInteractionLoop::exposeGeometry(size_t j)
+{
+	auto&          geom = static_cast<ScGeom&>(*held[j].interaction->geom);
+	const double*  x1   = system.pose.data() + 8 * system.firstOf(j);
+	const double*  x2   = system.pose.data() + 8 * system.secondOf(j);
+	const Vector3r branch(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]);
+	const Real     distance = branch.norm();
+	geom.normal             = branch / distance;
+	geom.penetrationDepth   = geom.radius1 + geom.radius2 - distance;
+	geom.contactPoint       = Vector3r(x1[0], x1[1], x1[2]) + (geom.radius1 - geom.penetrationDepth / 2) * geom.normal;
+}
+
+void BondedInteractionLoop::stopAtNotFinite(std::int32_t bond) const
+{
+	const Interaction& I = *held[size_t(bond)].interaction;
+	const Vector3r     x = (*scene->bodies)[I.getId1()]->state->refPos;
+	std::ostringstream text;
+	text << "the bond of bodies #" << I.getId1() << " and #" << I.getId2() << " became infinite or not a number in step " << scene->iter << ", t = " << scene->time
+	     << " s; #" << I.getId1() << " was at (" << x[0] << ", " << x[1] << ", " << x[2] << ") m at the start; check O.dt = " << scene->dt
+	     << " s against ddem.bonded.critical_time_step(), and what moves these bodies";
+	throw std::runtime_error(text.str());
+}
+
+} // namespace yade

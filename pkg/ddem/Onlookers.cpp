@@ -1,0 +1,43 @@
+// GPL v2 or later, see LICENSE.
+#include <pkg/ddem/Onlookers.hpp>
+
+namespace yade {
+
+namespace {
+
+	constexpr auto longestUnseen = std::chrono::milliseconds(200); ///< state is no older than this for other threads while a run goes on
+
+	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides; early by `slack` of real time rather than late.
+	bool isDue(const PeriodicEngine& e, long iter, Real time, Real slack)
+	{
+		if (e.firstIterRun > 0 && e.nDone == 0) return e.firstIterRun == iter;
+		const long done = iter < e.iterLast ? 0 : e.nDone;
+		const bool due  = (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod) || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
+		        || (e.iterPeriod > 0 && iter - e.iterLast >= e.iterPeriod);
+		return ((e.nDo < 0 || done < e.nDo) && due) || (done == 0 && e.initRun);
+	}
+
+} // namespace
+
+bool somebodyMayLook(const Scene& scene, const Engine& self, std::chrono::steady_clock::time_point lastExposure, bool (*neverLooks)(const Engine&))
+{
+	const long next = scene.iter + 1;
+	const Real then = scene.time + scene.dt;
+	if (!Omega::instance().isRunning()) return true; // O.step, or a pause was asked for
+	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return true;
+	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return true;
+	if (std::chrono::steady_clock::now() - lastExposure > longestUnseen) return true;
+	bool before = true; // engines before this one act next in the next step
+	for (const auto& e : scene.engines) {
+		if (e.get() == &self) {
+			before = false;
+			continue;
+		}
+		if (e->dead || neverLooks(*e)) continue;
+		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
+		if (!periodic || isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) return true;
+	}
+	return false;
+}
+
+} // namespace yade
