@@ -37,77 +37,92 @@ bool BondedInteractionLoop::oneByOne() const
 	return !callbacks.empty() || scene->isPeriodic;
 }
 
-/// In place of the geometry functor of bonds, whose geometry nobody needs while they are computed together; else it passes calls on.
-class BondedInteractionLoop::GeometryGate : public IGeomFunctor {
-public:
-	shared_ptr<IGeomFunctor> real;
-	bool                     closed = false;
-
-	bool go(const shared_ptr<Shape>&       shape1,
-	        const shared_ptr<Shape>&       shape2,
-	        const State&                   state1,
-	        const State&                   state2,
-	        const Vector3r&                shift2,
-	        const bool&                    force,
-	        const shared_ptr<Interaction>& interaction) override
-	{
-		return closed || real->go(shape1, shape2, state1, state2, shift2, force, interaction);
-	}
-};
-
-BondedInteractionLoop::~BondedInteractionLoop() { release(); }
-
-void BondedInteractionLoop::release()
-{
-	for (const Held& h : held)
-		if (h.interaction && h.interaction->functorCache.geom == gate) h.interaction->functorCache.geom = nullptr; // the loop that comes next looks it up
-	held.clear();
-	known = -1;
-}
-
 void BondedInteractionLoop::action()
 {
 	Law* const bondLaw = law();
 	if (!bondLaw || oneByOne()) {
-		release();
+		held.clear();
+		known = -1;
 		InteractionLoop::action();
 		return;
 	}
-	if (!upToDate()) collect(*bondLaw);
-	struct Closed { // also when something is thrown
-		GeometryGate& gate;
-		Law&          law;
-		Closed(GeometryGate& g, Law& l)
-		        : gate(g)
-		        , law(l)
-		{
-			gate.closed = law.leaveBonds = true;
-		}
-		~Closed() { gate.closed = law.leaveBonds = false; }
-	};
-	if (gate) {
-		const Closed closed(*gate, *bondLaw);
-		InteractionLoop::action();
-	} else
-		InteractionLoop::action();
+	if (!locateHeld()) {
+		collect(*bondLaw);
+		locateHeld();
+	}
+	actOnOthers();
 	advance(*bondLaw);
 }
 
-bool BondedInteractionLoop::upToDate() const
+bool BondedInteractionLoop::locateHeld()
 {
 	if (known != BondedPhys::bondsMade || knownScene != scene || 8 * broken > held.size()) return false;
-	auto& all = *scene->interactions;
-	return std::all_of(held.begin(), held.end(), [&all](const Held& h) {
-		if (!h.interaction) return true;
+	InteractionContainer& all = *scene->interactions;
+	isHeld.assign(all.size(), 0);
+	for (const Held& h : held) {
+		if (!h.interaction) continue;
 		const auto place = size_t(h.interaction->linIx);
-		return place < all.size() && all[place] == h.interaction && h.interaction->phys.get() == h.phys;
-	});
+		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys) return false; // somebody has erased it
+		isHeld[place] = 1;
+	}
+	return true;
+}
+
+/// What InteractionLoop does, for everything but the bonds.
+void BondedInteractionLoop::actOnOthers()
+{
+	lawDispatcher->scene = physDispatcher->scene = geomDispatcher->scene = scene;
+	geomDispatcher->updateScenePtr();
+	physDispatcher->updateScenePtr();
+	lawDispatcher->updateScenePtr();
+	InteractionContainer& all          = *scene->interactions;
+	const bool            removeUnseen = all.iterColliderLastRun >= 0 && all.iterColliderLastRun == scene->iter;
+	const long            size         = long(all.size());
+#pragma omp parallel for schedule(guided)
+	for (long i = 0; i < size; i++) {
+		if (isHeld[size_t(i)]) continue;
+		const shared_ptr<Interaction>& I = all[size_t(i)];
+		if (removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) all.requestErase(I);
+		else if (!act(I))
+			all.requestErase(I);
+	}
+}
+
+/// \returns whether the interaction may stay
+bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
+{
+	const auto& bodies = *scene->bodies;
+	Body *body1 = bodies[I->getId1()].get(), *body2 = bodies[I->getId2()].get();
+	if (!body1 || !body2) return false;
+	if (body1->isClump() || body2->isClump() || !body1->shape || !body2->shape || !I->functorCache.geomExists) return true;
+	auto& functors = I->functorCache;
+	bool  swap     = false;
+	if (!functors.geom) {
+		functors.geom       = geomDispatcher->getFunctor2D(body1->shape, body2->shape, swap);
+		functors.geomExists = bool(functors.geom);
+		if (!functors.geom) return true; // for ever without interaction
+		if (swap) {
+			I->swapOrder();
+			std::swap(body1, body2);
+		}
+	}
+	const bool wasReal = I->isReal();
+	if (!functors.geom->go(body1->shape, body2->shape, *body1->state, *body2->state, Vector3r::Zero(), false, I)) return !wasReal;
+	if (!functors.phys) functors.phys = physDispatcher->getFunctor2D(body1->material, body2->material, swap);
+	if (!functors.phys)
+		throw std::runtime_error("BondedInteractionLoop has no Ip2 functor for " + body1->material->getClassName() + " and " + body2->material->getClassName());
+	functors.phys->go(body1->material, body2->material, I);
+	if (!wasReal) I->iterMadeReal = scene->iter;
+	if (!functors.constLaw) functors.constLaw = lawDispatcher->getFunctor2D(I->geom, I->phys, swap);
+	if (!functors.constLaw)
+		throw std::runtime_error("BondedInteractionLoop has no Law2 functor for " + I->geom->getClassName() + " and " + I->phys->getClassName());
+	return functors.constLaw->go(I->geom, I->phys, I.get());
 }
 
 void BondedInteractionLoop::collect(Law& bondLaw)
 {
 	expose();
-	release();
+	held.clear();
 	for (const auto& I : *scene->interactions) {
 		auto* phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
 		if (phys && phys->bonded) held.push_back({ I, phys });
@@ -137,23 +152,10 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 			overloaded.push_back(std::int32_t(j));
 	}
 	system.assemble(particles.size());
-	closeGate();
 	broken     = 0;
 	known      = BondedPhys::bondsMade;
 	knownScene = scene;
 	exposed    = true;
-}
-
-void BondedInteractionLoop::closeGate()
-{
-	if (held.empty()) return;
-	if (!gate) gate = boost::make_shared<GeometryGate>();
-	const Interaction& any  = *held.front().interaction;
-	bool               swap = false;
-	gate->real              = geomDispatcher->getFunctor2D((*scene->bodies)[any.getId1()]->shape, (*scene->bodies)[any.getId2()]->shape, swap);
-	if (!gate->real) throw std::runtime_error("the BondedInteractionLoop has no geometry functor for two spheres: give it Ig2_Sphere_Sphere_ScGeom()");
-	for (const Held& h : held)
-		h.interaction->functorCache.geom = gate;
 }
 
 void BondedInteractionLoop::fetchPoses()
@@ -207,8 +209,7 @@ void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std:
 		exposeGeometry(size_t(bond));
 		if (!bondLaw.breakBond(*h.interaction, last)) scene->interactions->requestErase(h.interaction);
 		system.remove(size_t(bond));
-		h.interaction->functorCache.geom = nullptr;
-		h                                = {};
+		h = {};
 		broken++;
 	}
 }

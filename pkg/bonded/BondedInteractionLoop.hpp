@@ -10,7 +10,7 @@ namespace yade {
 
 class BondedInteractionLoop : public InteractionLoop {
 public:
-	virtual ~BondedInteractionLoop();
+	virtual ~BondedInteractionLoop() = default;
 	void action() override;
 
 	/// Brings geometry and physics of the bonds' interactions up to the last step.
@@ -34,14 +34,13 @@ private:
 		BondedPhys*             phys;
 	};
 	using Law = Law2_ScGeom_BondedPhys_MohrCoulomb;
-	class GeometryGate;
 
 	Law* law() const;
 	bool oneByOne() const;
-	bool upToDate() const;
+	bool locateHeld();
+	void actOnOthers();
+	bool act(const shared_ptr<Interaction>& I);
 	void collect(Law& law);
-	void release();
-	void closeGate();
 	void fetchPoses();
 	void advance(Law& law);
 	void breakOverloaded(Law& law, const std::vector<std::int32_t>& bonds);
@@ -49,9 +48,9 @@ private:
 	void exposeGeometry(size_t bond);
 	[[noreturn]] void stopAtNotFinite(std::int32_t bond) const;
 
-	shared_ptr<GeometryGate>              gate;
 	ddem::BondSystem                      system;
 	std::vector<Held>                     held;       ///< of every bond of the system
+	std::vector<char>                     isHeld;     ///< of every interaction of the scene
 	std::vector<Body::id_t>               particles;  ///< of every particle of the system
 	std::vector<std::int32_t>             overloaded; ///< bonds found beyond their strength in the last step
 	std::size_t                           broken = 0; ///< of the held ones

@@ -39,7 +39,6 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 {
 	auto& phys = static_cast<BondedPhys&>(*iPhys);
 	if (!phys.bonded) return advanceContact(*I);
-	if (leaveBonds) return true;
 	if (esys) { // ESyS-Particle tests the loads of the last step
 		const ddem::BondStress last { phys.normalStress, phys.shearStress };
 		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return breakBond(*I, last);

@@ -17,7 +17,6 @@ public:
 	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
 
 	ddem::BondConvention bondConvention() const { return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent; }
-	bool leaveBonds = false; ///< set while a BondedInteractionLoop, which computes bonds itself, runs the functors
 	/// Replaces a bond that has failed under these stresses by a contact, which acts at once, and records it. \returns whether the two touch
 	bool breakBond(Interaction& I, const ddem::BondStress& stress);
 	/// Adds stored energy to the book.
