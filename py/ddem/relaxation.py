@@ -8,8 +8,7 @@ from yade import O
 
 from .block import _engine
 
-#: steps between two looks at the residual
-EVERY = 500
+FIRST = 500  #: steps before the first look at the residual; then there is one whenever a fifth as many steps as so far have passed
 
 
 def relax(residual=1e-6, damping=0.3, limit=200_000):
@@ -36,7 +35,7 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 	try:
 		while True:
 			engine.damping = damping
-			O.run(EVERY - 1, True)
+			O.run(max(FIRST, (O.iter - first) // 5) - 1, True)
 			engine.damping = 0
 			reached = _step_and_residual(engine)
 			if reached <= residual:

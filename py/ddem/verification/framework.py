@@ -139,8 +139,12 @@ class Check:
 		"""Draw a picture where pictures are wanted; ``draw()`` is called at once and returns a figure or axes."""
 		if not self._wanted:
 			return
+		from matplotlib import rc_context
+
+		from .. import plots
 		began = time.perf_counter()
-		drawn = draw()
+		with rc_context(plots.STYLE):
+			drawn = draw()
 		self.pictures.append(Picture(getattr(drawn, "figure", None) or drawn, caption))
 		self._drawing += time.perf_counter() - began
 

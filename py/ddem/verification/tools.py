@@ -1,9 +1,13 @@
 # GPL v2 or later, see LICENSE.
 """What several cases need: materials, engines, motion of whole samples, axes of pictures."""
+import contextlib
+
 import numpy as np
 from matplotlib import rc_context
 
-from yade import DeformableElastMat, DeformableEngine, ForceResetter, O
+from scipy.optimize import least_squares
+
+from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, PyRunner, log
 
 from .. import plots
 
@@ -33,6 +37,16 @@ def start(*engines, step=0.8, **settings):
 	return engine
 
 
+@contextlib.contextmanager
+def without_warnings():
+	"""For scenes that do on purpose what the engine warns of."""
+	log.setLevel("DeformableEngine", log.ERROR)
+	try:
+		yield
+	finally:
+		log.unsetLevel("DeformableEngine")
+
+
 def bodies(block):
 	"""Node bodies, then triangle bodies, of a block."""
 	return [O.bodies[int(i)] for i in (*block.node_ids, *block.triangle_ids)]
@@ -57,6 +71,44 @@ def set_velocity(block, velocity, spin=0.0):
 		O.bodies[int(i)].state.angVel = (0, 0, float(value))
 
 
+_recorders = []  # PyRunner finds them here by number
+
+
+class Recorder:
+	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the DeformableEngine, so that positions are those of the time."""
+
+	def __init__(self, function, every):
+		self._function, self._rows = function, []
+		self.engine = PyRunner(command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{len(_recorders)}]._take()", iterPeriod=every, initRun=True)
+		_recorders.append(self)
+
+	def _take(self):
+		self._rows.append((O.time, np.array(self._function(), float)))
+
+	@property
+	def times(self):
+		"""(k,) [s]."""
+		return np.array([time for time, _ in self._rows])
+
+	@property
+	def values(self):
+		"""(k, …)."""
+		return np.array([value for _, value in self._rows])
+
+
+def fit_frequencies(times, signal, guesses):
+	"""Angular frequencies [rad/s], near the guesses, of the harmonic oscillations whose sum is closest to the signal (least squares), a constant left free."""
+	guesses = np.atleast_1d(np.asarray(guesses, float))
+
+	def misfit(scaled):
+		phases = np.outer(times, scaled * guesses)
+		basis = np.column_stack([np.ones(len(times)), np.cos(phases), np.sin(phases)])
+		return basis @ np.linalg.lstsq(basis, signal, rcond=None)[0] - signal
+
+	scale = np.abs(signal).max()
+	return least_squares(lambda scaled: misfit(scaled) / scale, np.ones(len(guesses)), xtol=1e-12, ftol=1e-14, gtol=1e-14).x * guesses
+
+
 def axes(width=plots.COLUMN, height=None, panels=1, **options):
 	"""A figure [mm] with a row of panels in the style of the plots: (figure, list of axes)."""
 	with rc_context(plots.STYLE):
@@ -66,3 +118,9 @@ def axes(width=plots.COLUMN, height=None, panels=1, **options):
 		for ax in row:
 			ax.spines[["top", "right"]].set_visible(False)
 		return fig, list(row)
+
+
+def legend(ax, columns=2):
+	"""A legend above the axes, where it covers nothing."""
+	with rc_context(plots.STYLE):
+		ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.2, handlelength=1.6)

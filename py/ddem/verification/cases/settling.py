@@ -47,7 +47,7 @@ def settling(check, size=2.0):
 		ax.plot([-weight / WIDTH / 1e6, 0], [0, HEIGHT], "k-", linewidth=0.7, label="−ρ g (H − y)")
 		ax.set_xlabel("vertical stress [MPa]")
 		ax.set_ylabel("height [m]")
-		ax.legend()
+		tools.legend(ax)
 		return fig
 
 	check.picture(draw, "Vertical stress of the triangles over the height of the column at rest.")

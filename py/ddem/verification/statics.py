@@ -1,0 +1,120 @@
+# GPL v2 or later, see LICENSE.
+"""Static problems solved twice: by FreeFem++ on the mesh in which every triangle is split at its centroid, and by deformable triangles."""
+from dataclasses import dataclass
+
+import numpy as np
+
+from yade import O, Vector3, ddem
+
+from . import freefem, tools
+
+
+@dataclass
+class Solution:
+	"""A static solution; displacements have the vertices' rows first, then the centroids'."""
+	block: object  # ddem.Block at rest, relaxed
+	freefem: np.ndarray  # displacements by FreeFem++ (n + m, 2) [m]
+	relaxed: np.ndarray  # displacements by deformable triangles (n + m, 2) [m]
+	unbalanced: float  # largest force out of balance of the deformable triangles in FreeFem++'s solution, over the largest nodal force [-]
+	residual: float  # of the relaxation, see ddem.relax
+	steps: int  # of the relaxation
+
+	@property
+	def difference(self):
+		"""Largest difference of a displacement over the largest displacement [-]."""
+		return np.abs(self.relaxed - self.freefem).max() / np.abs(self.freefem).max()
+
+
+def split_at_centroids(mesh):
+	"""Nodes and triangles of the barycentric (Alfeld) split: the vertices first, then a centroid for each triangle."""
+	centre = len(mesh.nodes) + np.arange(len(mesh.triangles))
+	parts = [np.column_stack([centre, mesh.triangles[:, k], mesh.triangles[:, (k + 1) % 3]]) for k in range(3)]
+	return np.vstack([mesh.nodes, mesh.centroids]), np.stack(parts, axis=1).reshape(-1, 3)
+
+
+def nodal_loads(mesh, where, traction, points=8):
+	"""Nodal forces per thickness (n, 2) [N/m] that do the work of a traction on the border.
+
+	:param where: says which border edges carry it, from the arrays x, y [m] of their middles
+	:param traction: (points, outer normals), both (…, 2), -> (…, 2) [Pa]
+	:param points: of Gauss–Legendre integration on each edge
+	"""
+	edges = mesh.boundary_edges()
+	a, b = mesh.nodes[edges[:, 0]], mesh.nodes[edges[:, 1]]
+	chosen = where(*(0.5 * (a + b)).T)
+	edges, a, b = edges[chosen], a[chosen], b[chosen]
+	along, weights = np.polynomial.legendre.leggauss(points)
+	part = 0.5 * (1 + along)[:, None, None]
+	edge = b - a
+	normals = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
+	forces = traction(a + part * edge, np.broadcast_to(normals, (points, *normals.shape))) * (0.5 * weights[:, None] * np.linalg.norm(edge, axis=1))[:, :, None]
+	loads = np.zeros(mesh.nodes.shape)
+	np.add.at(loads, edges[:, 0], ((1 - part) * forces).sum(axis=0))
+	np.add.at(loads, edges[:, 1], (part * forces).sum(axis=0))
+	return loads
+
+
+def solve(mesh, material, loads, held, rotation="none", thickness=1.0, **relaxation):
+	"""Solve by FreeFem++, see whether the forces of deformable triangles balance in its solution, and relax deformable triangles from rest.
+
+	:param mesh: renumbered (mesh.reordered()), so that its rows are the block's
+	:param material: elastic, in O.materials
+	:param loads: (n, 2) nodal forces per thickness [N/m]
+	:param held: (n, 2) true where the displacement is zero
+	:param relaxation: residual and other settings of ddem.relax
+	:returns: :class:`Solution`
+	"""
+	nodes, triangles = split_at_centroids(mesh)
+	count = len(mesh.nodes)
+	padding = np.zeros((len(nodes) - count, 2))
+	expected = freefem.solve(nodes, triangles, tools.lame(material), np.vstack([loads, padding]), np.vstack([held, padding > 0]))
+
+	block = ddem.append(mesh, material, thickness=thickness)
+	if not np.array_equal(block.mesh.triangles, mesh.triangles):
+		raise ValueError("solve() needs a mesh that is numbered as the block is: mesh.reordered()")
+	engine = tools.start(rotation="none")
+	unbalanced = _unbalanced(block, engine, expected, loads * thickness, held)
+	for i, row in zip(block.node_ids, held):
+		O.bodies[int(i)].state.blockedDOFs = "z" + "".join(name for name, fixed in zip("xy", row) if fixed) + "XYZ"
+	for i, force in zip(block.node_ids, loads * thickness):
+		O.forces.setPermF(int(i), (*force, 0))
+	engine = tools.start(rotation=rotation)
+	reached, steps = ddem.relax(**relaxation)
+	moved = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - nodes
+	return Solution(block, expected, moved, unbalanced, reached, steps)
+
+
+def _unbalanced(block, engine, displacement, loads, held):
+	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at which round-off of positions does not show: the
+	treatment is linear."""
+	members = tools.bodies(block)
+	reference = [body.state.refPos for body in members]
+	size = np.sqrt(block.mesh.areas.mean())
+	scale = 1e-2 * size / np.abs(displacement).max()
+	for body, (x, y, _), (u, v) in zip(members, reference, displacement):
+		body.state.blockedDOFs = "xyzXYZ"
+		body.state.pos = (x + scale * u, y + scale * v, 0)
+	O.step()
+	node, core = engine.array("nodeForce") / scale + loads, engine.array("coreForce") / scale
+	largest = np.abs(engine.array("nodeForce")).max() / scale
+	for body, place in zip(members, reference):
+		body.state.pos, body.state.vel, body.state.blockedDOFs = place, Vector3.Zero, "z"
+	for i in block.triangle_ids:
+		O.bodies[int(i)].state.blockedDOFs = "zXY"
+	return max(np.abs(np.where(held, 0, node)).max(), np.abs(core).max()) / largest
+
+
+def recover(points, values, at, radius):
+	"""Values (…,) at a place from those at points around it: the quadratic of least squares over the points within the radius [m]; needs 12 of them.
+
+	:param points: (n, 2) [m]
+	:param values: (n, …)
+	:param at: (2,) [m]
+	"""
+	offset = (points - at) / radius
+	near = np.linalg.norm(offset, axis=1) < 1
+	if near.sum() < 12:
+		raise ValueError(f"only {near.sum()} points within {radius:g} m of {tuple(at)}; a quadratic needs 12")
+	x, y = offset[near].T
+	terms = np.column_stack([np.ones(len(x)), x, y, x * x, x * y, y * y])
+	return np.linalg.lstsq(terms, values[near], rcond=None)[0][0]
