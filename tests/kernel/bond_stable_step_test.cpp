@@ -107,4 +107,23 @@ TEST(StableStep, boundsWholePackingsClosely)
 	}
 }
 
+TEST(DampedStableStep, isSharpForAnOscillatorWithLaggingDamping) // v' = v - h (ω² x + λ v), x' = x + h v'
+{
+	const double omega = 3;
+	for (const double rate : { 0.1, 1., 10. }) {
+		const double limit  = dampedStableStep(2 / omega, 2 / std::sqrt(rate));
+		const auto   growth = [&](double h) {
+                        double x = 1, v = 0;
+                        for (int i = 0; i < 4000; i++) {
+                                v -= h * (omega * omega * x + rate * v);
+                                x += h * v;
+                        }
+                        return std::abs(x);
+		};
+		EXPECT_LT(growth(0.99 * limit), 1) << rate;
+		EXPECT_FALSE(growth(1.01 * limit) < 1e3) << rate; // it overflows to what is not a number
+	}
+	EXPECT_EQ(dampedStableStep(0.5, std::numeric_limits<double>::infinity()), 0.5);
+}
+
 } // namespace
