@@ -1,4 +1,5 @@
 # GPL v2 or later, see LICENSE.
+# needs: freefem++
 """See deformable triangles and the concrete law hold: cases with exact, published or independent solutions, each with its error and tolerance.
 
 Run:      scripts/ddem run scripts/verify.py                          (the quick cases: about a minute)

@@ -15,7 +15,7 @@ SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.
 KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s"]
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow else []) for case in verification.all_cases()])
+@pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow or case.needs else []) for case in verification.all_cases()])
 def test_case(case):
 	result = verification.run(case, pictures=True)
 	assert not result.error, result.error

@@ -30,7 +30,8 @@ itself). It reads like an example::
 		check.note("What the numbers mean, a limit that they show.")
 
 - ``group`` is one of :data:`framework.GROUPS` and orders the report; ``seconds`` is the wall time that the case takes, rounded up. Cases that take longer than
-  :data:`framework.SLOW` seconds are slow: they run with ``--all`` only.
+  :data:`framework.SLOW` seconds are slow: they run with ``--all`` only. One that calls another program says so with ``needs``; the tests run it among the slow ones, and
+  its Debian package stands in the header of scripts/verify.py.
 - The first line of the docstring is the case's title, the other paragraphs are its text in the report; *Reference:* and *Expect:* are paragraphs of it. What comes after
   a blank line and is indented by a tab more is shown as a formula.
 - ``check(quantity, value, reference, tolerance, source)`` records a comparison: the error is |value − reference| over |reference|, or over ``scale`` where the reference

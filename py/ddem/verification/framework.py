@@ -44,6 +44,7 @@ class Case:
 	group: str
 	seconds: float  # wall time it takes, about [s]
 	function: object
+	needs: str = ""  # program that it calls, of a Debian package that scripts/verify.py asks for
 
 	@property
 	def slow(self):
@@ -161,11 +162,12 @@ class Check:
 		return Result(case, [Record(self._case, *row, wall) for row in self._rows], self.pictures, self.notes, wall, error)
 
 
-def case(group, seconds):
+def case(group, seconds, needs=""):
 	"""Declare the decorated function to be a verification case; see the package's docstring.
 
 	:param group: one of :data:`GROUPS`
 	:param seconds: wall time that it takes, rounded up [s]
+	:param needs: program that it calls, if any; such a case runs with the slow tests
 	"""
 	if group not in GROUPS:
 		raise ValueError(f"group '{group}' is unknown; there are {', '.join(GROUPS)}")
@@ -176,7 +178,7 @@ def case(group, seconds):
 			raise ValueError(f"case '{name}' needs a docstring: its title, what it shows, Reference: and Expect:")
 		if name in _cases and _cases[name].function.__module__ != function.__module__:
 			raise ValueError(f"two cases are called '{name}': in {_cases[name].function.__module__} and in {function.__module__}")
-		_cases[name] = Case(name, group, seconds, function)
+		_cases[name] = Case(name, group, seconds, function, needs)
 		return function
 
 	return declare

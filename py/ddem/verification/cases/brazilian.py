@@ -9,7 +9,7 @@ from yade.ddem.verification import case, statics, tools
 RADIUS, FORCE, CORNERS = 0.05, 1e6, 120  # [m], [N/m], of the polygon
 
 
-@case(group="statics", seconds=3)
+@case(group="statics", seconds=3, needs="FreeFem++")
 def brazilian(check, size=0.004):
 	"""Brazilian disc: tension at the centre
 

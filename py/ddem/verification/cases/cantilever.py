@@ -31,7 +31,7 @@ def beam_frequency(material):
 	return brentq(determinant, 0.8 * bernoulli, 1.001 * bernoulli, rtol=1e-12)
 
 
-@case(group="statics", seconds=4)
+@case(group="statics", seconds=4, needs="FreeFem++")
 def cantilever(check, size=0.006):
 	"""Cantilever: deflection and first frequency
 

@@ -26,7 +26,7 @@ def hoop_at_the_hole(points, stress, angles):
 	return np.array([statics.recover(coordinates, hoop, np.array([1.0, angle]), radius=0.4) for angle in angles])
 
 
-@case(group="statics", seconds=4)
+@case(group="statics", seconds=4, needs="FreeFem++")
 def kirsch(check, fine=0.0004):
 	"""Kirsch: a plate with a hole
 
