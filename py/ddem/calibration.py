@@ -16,11 +16,12 @@
 		).run()
 	print(outcome.reached, outcome.best.values, outcome.why)
 
-Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is an elasticity d ln(measure)/d ln(parameter), and
-the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search starts with steps by the scaling laws of the
-parameters, as long as each at least halves the largest miss. Then scipy's trust-region least squares takes over, with elasticities measured by finite differences, all
-columns at the same time; they are measured again where a step did not even halve what was missed. Steps of finite differences are large (8 %), because breaking of
-bonds is chaotic and small steps would measure its noise. The search stops at the first point that meets all targets.
+Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is an elasticity
+d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search starts
+with steps by the scaling laws of the parameters, as long as each at least halves the largest miss. Then scipy's least squares in a box-shaped trust region takes
+over, with elasticities measured by finite differences, all columns at the same time; they are measured again where a step did not even halve what was missed.
+Steps of finite differences are large (8 %), because breaking of bonds is chaotic and small steps would measure its noise. The search stops at the first point
+that meets all targets.
 """
 import math
 import time
@@ -191,10 +192,14 @@ class Calibration:
 
 		margin = 1e-9  # scipy wants a start inside the bounds
 		first = np.clip(np.ones(len(start)), 1 + self._lower - start + margin, 1 + self._upper - start - margin)
-		least_squares(residuals, first, jac=jacobian, bounds=(1 + self._lower - start, 1 + self._upper - start), xtol=_SMALLEST_STEP, ftol=_SMALLEST_GAIN, gtol=1e-6)
+		least_squares(
+			residuals, first, jac=jacobian, bounds=(1 + self._lower - start, 1 + self._upper - start), method="dogbox", xtol=_SMALLEST_STEP,
+			ftol=_SMALLEST_GAIN, gtol=1e-6
+		)
 
 	def _differences(self, x, stop=True):
-		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time; the other way where a bound is near or a point fails."""
+		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time, to the other side where a bound is near or
+		a point fails."""
 		base = self._look([x], "search", stop)[0]
 		x, width = self._logs(base.values), math.log1p(self.step)
 		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
@@ -203,7 +208,9 @@ class Calibration:
 		for k in [k for k, point in enumerate(points) if point.error]:
 			points[k] = self._look([x - np.eye(len(x))[k] * signs[k] * width], "sensitivity", stop, [k])[0]
 			if points[k].error:
-				raise EvaluationError(f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}")
+				raise EvaluationError(
+					f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}"
+				)
 		change = np.array([self._misses(point) - self._misses(base) for point in points]).T
 		self._jacobian = change / np.array([self._logs(point.values)[k] - x[k] for k, point in enumerate(points)]) + 0.0  # no negative zeros
 		self._jacobian_at = base.values
@@ -220,7 +227,9 @@ class Calibration:
 				if missing:
 					raise ValueError(f"nothing measures the target {missing[0]}; there are {', '.join(point.measured) or 'no measures'}")
 				if not all(point.measured[target.name] > 0 for target in self.targets):
-					points[k] = point = Point(point.values, {}, {}, "a measure is not positive: " + ", ".join(f"{n} = {v:g}" for n, v in point.measured.items()))
+					points[k] = point = Point(
+						point.values, {}, {}, "a measure is not positive: " + ", ".join(f"{n} = {v:g}" for n, v in point.measured.items())
+					)
 			if any(point.values == other.values for other in seen):
 				continue  # told already
 			parameter = self.parameters[(columns or range(len(points)))[k]].name if purpose == "sensitivity" else None
@@ -273,8 +282,8 @@ class Calibration:
 					why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
 		if not why:
 			why.append(
-				"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, allow a larger "
-				"tolerance, or start elsewhere"
+				"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, "
+				"allow a larger tolerance, or start elsewhere"
 			)
 		return why
 

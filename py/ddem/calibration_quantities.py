@@ -95,8 +95,8 @@ def starts(model, targets, material):
 	if "young" in targets:
 		stiffer = targets["young"] / material["young"]
 		start.update((name, stiffer * material[name]) for name in moduli)
-	# the strengths of Zubelewicz's concrete are about half and a fourteenth of σ_p0, those of bonded spheres about C and a fifth of it
-	share = {"rigid": {"ucs": 1.0, "tensile": 0.2}, "deformable": {"ucs": 0.5, "tensile": 0.07}}[model]
+	# the strengths of Zubelewicz's concrete are about half and a fourteenth of σ_p0, those of bonded spheres about C and two fifths of it
+	share = {"rigid": {"ucs": 1.0, "tensile": 0.4}, "deformable": {"ucs": 0.5, "tensile": 0.07}}[model]
 	for target in ("ucs", "tensile"):
 		if target in targets:
 			start[_STRENGTH[model]] = targets[target] / share[target]

@@ -56,7 +56,9 @@ def test_repeated_start_evaluates_nothing_again(tmp_path):
 		assert (len(model.asked), bench.reused) == expected == (bench.ran, bench.reused)
 
 
-@pytest.mark.parametrize("settings, case", [({"specimen": "block"}, {"seed": 1}), ({"specimen": "prism", "speed": 1}, {"seed": 1}), ({"specimen": "prism"}, {"seed": 2})])
+@pytest.mark.parametrize(
+	"settings, case", [({"specimen": "block"}, {"seed": 1}), ({"specimen": "prism", "speed": 1}, {"seed": 1}), ({"specimen": "prism"}, {"seed": 2})]
+)
 def test_other_settings_are_not_reused(tmp_path, settings, case):
 	with Bench(Counted(), [{"seed": 1}], {"specimen": "prism"}, tmp_path / "e") as bench:
 		bench.measure(points(1))
@@ -81,7 +83,9 @@ def test_a_line_says_everything(tmp_path):
 	assert (bad["parameters"], bad["measured"], bad["error"]) == ({"x": 2.0}, None, "nothing works at 2.0")
 
 
-@pytest.mark.parametrize("damage", [b"not json\n", b"[1, 2]\n", b"{}\n", b'{"format": 0}\n', b"\xff\xfe\n", b'{"format": 1, "error": null, "measured": {"y": NaN}, "key": "k"}\n'])
+@pytest.mark.parametrize(
+	"damage", [b"not json\n", b"[1, 2]\n", b"{}\n", b'{"format": 0}\n', b"\xff\xfe\n", b'{"format": 1, "error": null, "measured": {"y": NaN}, "key": "k"}\n']
+)
 def test_damaged_line_costs_only_its_own_evaluation(tmp_path, damage):
 	path = tmp_path / "e"
 	with Bench(Counted(), path=path) as bench:
