@@ -7,6 +7,7 @@
 #include <pkg/ddem/kernel/EigenSpace.hpp>
 
 #include <algorithm>
+#include <exception>
 #include <set>
 #include <sstream>
 
@@ -78,14 +79,19 @@ void BondedInteractionLoop::actOnOthers()
 	InteractionContainer& all          = *scene->interactions;
 	const bool            removeUnseen = all.iterColliderLastRun >= 0 && all.iterColliderLastRun == scene->iter;
 	const long            size         = long(all.size());
+	std::exception_ptr    failure; // none may leave a parallel loop
 #pragma omp parallel for schedule(guided)
 	for (long i = 0; i < size; i++) {
 		if (isHeld[size_t(i)]) continue;
 		const shared_ptr<Interaction>& I = all[size_t(i)];
-		if (removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) all.requestErase(I);
-		else if (!act(I))
-			all.requestErase(I);
+		try {
+			if ((removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) || !act(I)) all.requestErase(I);
+		} catch (...) {
+#pragma omp critical(BondedInteractionLoopFailure)
+			failure = std::current_exception();
+		}
 	}
+	if (failure) std::rethrow_exception(failure);
 }
 
 /// \returns whether the interaction may stay

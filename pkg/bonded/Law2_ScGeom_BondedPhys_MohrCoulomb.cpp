@@ -44,13 +44,14 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return breakBond(*I, last);
 	}
 	const State &          state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
+	const Vector3r         branch = branchOf(*I), normal = branch.normalized();
 	const ddem::BondLoads  loads  = ddem::bondLoads(
-                bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branchOf(*I)), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+                bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
 	const ddem::BondStress stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
 	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None) return breakBond(*I, stress);
 
 	const Vector3r force = ddem::eigenVector(loads.force);
-	phys.normalForce     = -loads.section.force.x * ddem::eigenVector(loads.axis);
+	phys.normalForce     = -force.dot(normal) * normal;
 	phys.shearForce      = -force - phys.normalForce;
 	phys.normalStress    = stress.normal;
 	phys.shearStress     = stress.shear;
@@ -115,11 +116,8 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
 {
-	auto& phys = static_cast<BondedPhys&>(*I.phys);
-	if (esys && (phys.gradualFriction || phys.normalDamping != 0 || phys.shearDamping != 0))
-		throw std::runtime_error("the convention 'esys' has neither gradual friction nor contact damping: reset gradualFriction, normalDamping and shearDamping of BondedMat");
 	const State &state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
-	return applyContact(I, contactLoadsOf(static_cast<const ScGeom&>(*I.geom), phys, state1, state2, branchOf(I)));
+	return applyContact(I, contactLoadsOf(static_cast<const ScGeom&>(*I.geom), static_cast<BondedPhys&>(*I.phys), state1, state2, branchOf(I)));
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)

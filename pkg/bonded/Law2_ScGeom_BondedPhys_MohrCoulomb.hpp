@@ -39,7 +39,7 @@ public:
 		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the "
 		"tension limit (see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
 		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending "
-		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii, failure one step later, friction that sticks again after every slip.\n\n"
+		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii, failure one step later, friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
 		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond that breaks under compression keeps "
 		"its normal force; its tangential force starts from zero. Gradual friction and viscous damping are options of :yref:`BondedMat`.\n\n"
 		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* (dissipated) [J].\n\n"

@@ -35,15 +35,12 @@ from yade import (
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
 	NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils)
 
+from . import broken_bonds
+
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
 DEFAULT_GAP = 0.0025
 
 _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bonded to it (tutorial of ESyS-Particle)
-
-_BROKEN = np.dtype([
-	("id1", int), ("id2", int), ("step", int), ("time", float), ("position", float, 3), ("normal", float, 3), ("radius", float), ("mode", "U7"),
-	("normal_stress", float), ("shear_stress", float), ("energy", float)
-])
 
 
 def append(packing, material, gap=None, color=None, mass_law="solid"):
@@ -146,7 +143,7 @@ class BondedSample:
 		records = [
 			(b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode, b.normalStress, b.shearStress, b.energy) for b in law().brokenBonds()
 		]
-		return np.array(records, dtype=_BROKEN)
+		return np.array(records, dtype=broken_bonds.DTYPE)
 
 	@property
 	def broken_fraction(self):
@@ -292,10 +289,12 @@ def check():
 	order = [names.index(name) for name in ("ForceResetter", "InteractionLoop", "NewtonIntegrator")]
 	if order != sorted(order):
 		raise RuntimeError("wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; see ddem.bonded.engines()")
-	law()
+	esys = law().convention == "esys"
 	for material in O.materials:
 		if isinstance(material, (BondedMat, ElasticWallMat)):
 			material.validate()
+		if esys and isinstance(material, BondedMat) and (material.gradualFriction or material.normalDamping or material.shearDamping):
+			raise ValueError(f"BondedMat '{material.label}': the convention 'esys' has neither gradualFriction nor normalDamping nor shearDamping; reset them or use 'consistent'")
 	limit = critical_time_step()
 	if O.dt > limit:
 		raise ValueError(f"O.dt = {O.dt} s is above the critical time step {limit} s of the bonds: the run would blow up; set O.dt = ddem.bonded.time_step(0.8)")
