@@ -12,12 +12,12 @@ from . import freefem, tools
 @dataclass
 class Solution:
 	"""A static solution; displacements have the vertices' rows first, then the centroids'."""
-	block: object  # ddem.Block at rest, relaxed
+	block: object  # ddem.Block
 	freefem: np.ndarray  # displacements by FreeFem++ (n + m, 2) [m]
-	relaxed: np.ndarray  # displacements by deformable triangles (n + m, 2) [m]
 	unbalanced: float  # largest force out of balance of the deformable triangles in FreeFem++'s solution, over the largest nodal force [-]
-	residual: float  # of the relaxation, see ddem.relax
-	steps: int  # of the relaxation
+	relaxed: np.ndarray = None  # displacements by deformable triangles (n + m, 2) [m]
+	residual: float = None  # of the relaxation, see ddem.relax
+	steps: int = 0  # of the relaxation
 
 	@property
 	def difference(self):
@@ -54,34 +54,39 @@ def nodal_loads(mesh, where, traction, points=8):
 	return loads
 
 
-def solve(mesh, material, loads, held, rotation="none", thickness=1.0, **relaxation):
-	"""Solve by FreeFem++, see whether the forces of deformable triangles balance in its solution, and relax deformable triangles from rest.
+def solve_and_balance(mesh, material, loads, held):
+	"""Solve by FreeFem++, and see whether the forces of deformable triangles balance in its solution.
 
 	:param mesh: renumbered (mesh.reordered()), so that its rows are the block's
 	:param material: elastic, in O.materials
 	:param loads: (n, 2) nodal forces per thickness [N/m]
 	:param held: (n, 2) true where the displacement is zero
-	:param relaxation: residual and other settings of ddem.relax
-	:returns: :class:`Solution`
+	:returns: :class:`Solution` without what is relaxed
 	"""
 	nodes, triangles = split_at_centroids(mesh)
 	count = len(mesh.nodes)
 	padding = np.zeros((len(nodes) - count, 2))
 	expected = freefem.solve(nodes, triangles, tools.lame(material), np.vstack([loads, padding]), np.vstack([held, padding > 0]))
 
-	block = ddem.append(mesh, material, thickness=thickness)
+	block = ddem.append(mesh, material)
 	if not np.array_equal(block.mesh.triangles, mesh.triangles):
 		raise ValueError("solve() needs a mesh that is numbered as the block is: mesh.reordered()")
 	engine = tools.start(rotation="none")
-	unbalanced = _unbalanced(block, engine, expected, loads * thickness, held)
+	return Solution(block, expected, _unbalanced(block, engine, expected, loads, held))
+
+
+def solve(mesh, material, loads, held, rotation="none", **relaxation):
+	"""The same, and deformable triangles relaxed from rest; further parameters are those of ddem.relax."""
+	solution = solve_and_balance(mesh, material, loads, held)
+	block = solution.block
 	for i, row in zip(block.node_ids, held):
 		O.bodies[int(i)].state.blockedDOFs = "z" + "".join(name for name, fixed in zip("xy", row) if fixed) + "XYZ"
-	for i, force in zip(block.node_ids, loads * thickness):
+	for i, force in zip(block.node_ids, loads):
 		O.forces.setPermF(int(i), (*force, 0))
 	engine = tools.start(rotation=rotation)
-	reached, steps = ddem.relax(**relaxation)
-	moved = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - nodes
-	return Solution(block, expected, moved, unbalanced, reached, steps)
+	solution.residual, solution.steps = ddem.relax(**relaxation)
+	solution.relaxed = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - np.vstack([mesh.nodes, mesh.centroids])
+	return solution
 
 
 def _unbalanced(block, engine, displacement, loads, held):
@@ -89,8 +94,8 @@ def _unbalanced(block, engine, displacement, loads, held):
 	treatment is linear."""
 	members = tools.bodies(block)
 	reference = [body.state.refPos for body in members]
-	size = np.sqrt(block.mesh.areas.mean())
-	scale = 1e-2 * size / np.abs(displacement).max()
+	corners = displacement[block.mesh.triangles]
+	scale = 0.1 / (np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1) / block.mesh.sizes).max()  # largest gradient about 0.1
 	for body, (x, y, _), (u, v) in zip(members, reference, displacement):
 		body.state.blockedDOFs = "xyzXYZ"
 		body.state.pos = (x + scale * u, y + scale * v, 0)
