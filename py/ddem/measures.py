@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""What a compression test measures: strength, strain at the peak and Young's modulus of a stress–strain curve."""
+"""What a test in compression or tension measures: strength, strain at the peak and Young's modulus of a stress–strain curve."""
 import math
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ FALL = 0.9  #: a curve has a peak when its stress falls below this part of the l
 
 @dataclass(frozen=True)
 class Strength:
-	"""Measures of a stress–strain curve, compression positive; made by :func:`strength`."""
+	"""Measures of a stress–strain curve, loading positive; made by :func:`strength`."""
 	ucs: float  # largest stress [Pa]; a lower bound of the strength unless peaked
 	strain_at_peak: float  # [-]
 	young: float  # slope between FIT of the strength on the way to the peak [Pa]; NaN with fewer than three records there
@@ -27,9 +27,9 @@ def strength(strain, stress, fit=FIT, fall=FALL):
 	The strength is the largest recorded stress. Young's modulus is the least-squares slope over the rows from the first that reaches *fit[0]* of it to the first
 	that reaches *fit[1]*, so that an oscillation later on the way does not enter (ESyS-Particle's tutorial; Weatherley et al. take 20 % and 60 %).
 
-	:param strain, stress: rows of the test in order of time, compression positive [-], [Pa]
+	:param strain, stress: rows of the test in order of time, compression positive, or tension positive in a test in tension [-], [Pa]
 	:returns: :class:`Strength`
-	:raises ValueError: lengths that differ, fewer than two rows, numbers that are not finite (which row), no compression at all
+	:raises ValueError: lengths that differ, fewer than two rows, numbers that are not finite (which row), no load at all
 	"""
 	strain, stress = np.asarray(strain, float), np.asarray(stress, float)
 	if strain.ndim != 1 or strain.shape != stress.shape or len(strain) < 2:
@@ -42,7 +42,7 @@ def strength(strain, stress, fit=FIT, fall=FALL):
 	peak = int(np.argmax(stress))
 	ucs = float(stress[peak])
 	if not ucs > 0:
-		raise ValueError(f"the curve has no compressive stress: its largest value is {ucs} Pa (compression is positive here)")
+		raise ValueError(f"the sample never carried a load: the largest stress of the curve is {ucs} Pa (compression is positive; tension in a test in tension)")
 	first, last = (int(np.argmax(stress >= part * ucs)) for part in fit)
 	young, offset = math.nan, math.nan
 	if last - first >= 2 and np.ptp(strain[first:last + 1]) > 0:

@@ -3,6 +3,8 @@
 import contextlib
 import csv
 import ctypes
+import hashlib
+import json
 import math
 import os
 import sys
@@ -98,7 +100,7 @@ class Packing:
 			writer.writerows(self.bonds.tolist())
 
 
-def prism(width, height, depth, rmin, rmax, seed=1, fails=5000):
+def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 	"""Random packing of touching spheres in a prism, x from 0 to *width*, y (the axis of loading) from 0 to *height*, z from -*depth*/2 to *depth*/2.
 
 	GenGeo's insertion packer, which ESyS-Particle's tutorial uses (Place and Mora 2001): seed spheres at random, then spheres that touch four neighbours or walls, until *fails*
@@ -107,6 +109,7 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000):
 	:param rmin, rmax: range of radii [m]
 	:param seed: same seed, same packing (on the same C library)
 	:param fails: more give a denser packing, and take longer
+	:param keep: folder, made when missing, from which a packing with the same parameters is taken where it was made before, and where it is kept otherwise
 	:returns: :class:`Packing`
 	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit
 	:raises ImportError: GenGeo is missing
@@ -114,9 +117,18 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000):
 	_check_sizes({"width": width, "height": height, "depth": depth, "rmin": rmin, "rmax": rmax}, rmin, rmax)
 	if 2 * rmax > min(width, height, depth):
 		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; choose a smaller radius, or layer()")
+	lower, upper = (0, 0, -depth / 2), (width, height, depth / 2)
+	path = _kept(keep, (width, height, depth), rmin, rmax, seed, fails)
+	if path and os.path.exists(path):
+		kept = read(path)
+		return Packing(kept.centres, kept.radii, lower, upper)
 	spheres = _pack((width, height, depth), rmin, rmax, seed, fails)
-	centre = np.array([0, 0, depth / 2])
-	return Packing(spheres[:, :3] - centre, spheres[:, 3], lower=(0, 0, -depth / 2), upper=(width, height, depth / 2))
+	packing = Packing(spheres[:, :3] - np.array([0, 0, depth / 2]), spheres[:, 3], lower, upper)
+	if path:
+		os.makedirs(keep, exist_ok=True)
+		packing.write(f"{path}.{os.getpid()}")
+		os.replace(f"{path}.{os.getpid()}", path)  # whole at any moment, for others who look for it
+	return packing
 
 
 def layer(width, height, rmin, rmax, seed=1, fails=5000):
@@ -165,6 +177,14 @@ def read(particles, bonds=None, length_unit="m"):
 		pairs = np.array(pairs, dtype=int).reshape(-1, 2)
 	data = np.array(rows) * unit
 	return Packing(data[:, :3], data[:, 3], bonds=pairs)
+
+
+def _kept(folder, size, rmin, rmax, seed, fails):
+	"""Where in a folder the packing with these parameters is kept."""
+	if folder is None:
+		return None
+	key = hashlib.sha256(json.dumps([size, (rmin, rmax), seed, fails]).encode()).hexdigest()[:12]
+	return os.path.join(folder, f"packing-seed{seed}-{key}.csv")
 
 
 def _check_sizes(sizes, rmin, rmax):

@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""Report of compression tests: table, summary.json, a CSV a model, pictures, and a report.html that holds everything.
+"""Report of tests in compression or tension: table, summary.json, a CSV a model, broken bonds, pictures, and a report.html that holds everything.
 
 Works on finished runs (:class:`runs.Run`), so a report can be made again without the scene::
 
@@ -12,10 +12,11 @@ import datetime
 import json
 import os
 import platform
+from dataclasses import dataclass
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from . import plots, report_figures
+from . import broken_bonds, plots, report_figures
 from .runs import cost_ratios
 
 _TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
@@ -26,12 +27,16 @@ THOUSANDS = "\u202f"  #: between thousands: a narrow space
 ROWS = (
 	("particles", "particles", "", 1, "{:,d}"),
 	("degrees_of_freedom", "degrees of freedom", "", 1, "{:,d}"),
+	("bonds", "bonds at the start", "", 1, "{:,d}"),
 	None,
 	("ucs_MPa", "strength (UCS)", "MPa", 1, "{:.1f}"),
+	("tensile_MPa", "tensile strength", "MPa", 1, "{:.2f}"),
 	("young_GPa", "Young's modulus", "GPa", 1, "{:.1f}"),
 	("strain_at_peak", "strain at the peak", "%", 100, "{:.3f}"),
 	("damage_at_peak", "damage at the peak", "", 1, "{:.3f}"),
 	("damage_at_end", "damage at the end", "", 1, "{:.3f}"),
+	("broken_in_tension", "bonds broken in tension", "", 1, "{:,d}"),
+	("broken_in_shear", "bonds broken in shear", "", 1, "{:,d}"),
 	("strain_at_end", "strain at the end", "%", 100, "{:.3f}"),
 	("energy_error", "energy error", "", 1, "{:.1e}"),
 	None,
@@ -43,6 +48,15 @@ ROWS = (
 	("ns_per_particle_step", "per particle and step", "ns", 1, "{:,.0f}"),
 	("ns_per_degree_of_freedom_step", "per degree of freedom and step", "ns", 1, "{:,.0f}"),
 )
+#: rows that are left out where no run has them
+_IF_ANY = {"bonds", "ucs_MPa", "tensile_MPa", "broken_in_tension", "broken_in_shear"}
+
+
+@dataclass(frozen=True)
+class Picture:
+	"""A picture of the page."""
+	data: str  # PNG file in base64
+	width: float  # [mm]
 
 
 class Report:
@@ -90,7 +104,9 @@ class Report:
 				rows.append(None)
 				continue
 			name, text, unit, factor, form = row
-			rows.append((text, unit, [_formatted(summary[name], factor, form) for summary in summaries]))
+			values = [summary.get(name) for summary in summaries]
+			if name not in _IF_ANY or any(value is not None for value in values):
+				rows.append((text, unit, [_formatted(value, factor, form) for value in values]))
 		return rows
 
 	def table(self):
@@ -114,6 +130,8 @@ class Report:
 		os.makedirs(self.folder, exist_ok=True)
 		for run in self.runs:
 			run.series.write(self._path(f"{run.model}.csv"))
+			if run.broken is not None:
+				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
 		with open(self._path("summary.json"), "w") as file:
 			json.dump(self.summary(), file, indent=2, allow_nan=False)
 			file.write("\n")
@@ -124,24 +142,26 @@ class Report:
 		return self._path("report.html")
 
 	def html(self, pictures):
-		"""The page; *pictures* by name as bytes of PNG files."""
+		"""The page; *pictures* (:class:`Picture`) by name."""
 		environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 		summary = self.summary()
 		return environment.get_template("compression.html").render(
 			title=self.title, written=self.written, command=self.command, settings=self.settings, notes=self.notes, versions=self.versions, machine=summary["machine"],
 			runs=self.runs, by_model={run.model: run for run in self.runs}, summaries=summary["models"], rows=self.table_rows(),
-			ratios=summary["cost_ratio_deformable_to_rigid"], pictures={name: base64.b64encode(data).decode() for name, data in pictures.items()}, options=self.options
+			ratios=summary["cost_ratio_deformable_to_rigid"], pictures=pictures, options=self.options, one=self.runs[0] if len(self.runs) == 1 else None
 		)
 
 	def _write_pictures(self):
 		pictures = {}
 		for name, draw in report_figures.ALL.items():
 			figure = draw(self.runs)
+			if figure is None:
+				continue
 			plots.save(figure, self._path(f"{name}.png"))
 			if self.pdf:
 				plots.save(figure, self._path(f"{name}.pdf"))
 			with open(self._path(f"{name}.png"), "rb") as file:
-				pictures[name] = file.read()
+				pictures[name] = Picture(base64.b64encode(file.read()).decode(), 25.4 * figure.get_figwidth())
 		return pictures
 
 	def _path(self, name):

@@ -1,10 +1,11 @@
 # GPL v2 or later, see LICENSE.
-"""Pictures of compression tests, each made from finished runs and returned as a matplotlib figure."""
+"""Pictures of tests in compression or tension, each made from finished runs and returned as a matplotlib figure; None where there is nothing to show."""
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.collections import LineCollection
 from matplotlib.ticker import FormatStrFormatter
 
+from . import broken_bonds as broken_list
 from . import plots
 from .measures import instants
 from .runs import ENERGY_PARTS
@@ -31,8 +32,9 @@ def stress_strain(runs):
 				ends = np.array([0.0, 0.9 * measures.ucs])
 				ax.plot(100 * (ends - measures.offset) / measures.young, ends / 1e6, "--", color=colour, linewidth=0.6)
 		ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
-		ax.plot([], [], "o", color="0.4", markersize=3.5, label="peak (UCS)")
-		_label(ax, "axial strain [%]", "axial stress [MPa]")
+		tension = runs[0].test == "tension"
+		ax.plot([], [], "o", color="0.4", markersize=3.5, label="peak (tensile strength)" if tension else "peak (UCS)")
+		_label(ax, "axial strain [%]", "axial stress, tension positive [MPa]" if tension else "axial stress [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))
 		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
@@ -67,6 +69,28 @@ def damage(runs):
 		ax.set_xlim(left=0)
 		ax.set_ylim(bottom=0)
 		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
+	return fig
+
+
+def broken_bonds(runs):
+	"""Number of broken bonds over time, by mode, with the moment of the peak stress."""
+	rigid = [run for run in runs if run.broken is not None]
+	if not rigid:
+		return None
+	run = rigid[0]
+	fig, axes = _figure(1, plots.COLUMN, 65)
+	ax, time = axes[0], run.series["time"]
+	with rc_context(plots.STYLE):
+		for label, mode, colour, line in (("all", None, "0.25", "-"), ("in tension", "tension", plots.COLOURS[0], "-"), ("in shear", "shear", plots.COLOURS[4], "-")):
+			ax.plot(1e3 * time, broken_list.counts(run.broken, time, mode), line, color=colour, label=label)
+		ax.axvline(1e3 * time[run.strength.peak], color="0.5", linewidth=0.6, linestyle=(0, (3, 1.5)), label="peak stress")
+		_label(ax, "time [ms]", "broken bonds [-]")
+		ax.set_xlim(0, 1e3 * time[-1])
+		ax.set_ylim(bottom=0)
+		share = ax.secondary_yaxis("right", functions=(lambda count: 100 * count / run.extra["bonds"], lambda part: part * run.extra["bonds"] / 100))
+		share.set_ylabel("share of all bonds [%]")
+		share.spines["right"].set_linewidth(0.6)
+		fig.legend(loc="outside upper center", ncols=4, columnspacing=1.5)
 	return fig
 
 
@@ -135,8 +159,8 @@ def engines(runs):
 
 #: pictures of the report, in order
 ALL = {
-	"stress_strain": stress_strain, "damage": damage, "wall_forces": wall_forces, "evolution": evolution, "final_damage": final_damage, "rotation": rotation,
-	"energy": energy, "engines": engines
+	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces, "evolution": evolution, "final_damage": final_damage,
+	"rotation": rotation, "energy": energy, "engines": engines
 }
 
 

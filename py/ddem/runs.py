@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""The record of a finished compression test, as plain data: what files, tables and pictures are made from."""
+"""The record of a finished test in compression or tension, as plain data: what files, tables and pictures are made from."""
 import math
 from dataclasses import dataclass, field
 
@@ -36,7 +36,7 @@ class Run:
 	wall: float  # wall time of all steps with their recording [s]
 	busy: float  # processor time of the same, all threads together [s]
 	threads: int
-	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_drift (what the book has too much) [SI]
+	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_drift (what the book has too much) [SI]; loading counts positive
 	snapshots: list  # of snapshots.TriangleSnapshot or SphereSnapshot, in order of time
 	engines: list  # (name, wall seconds, calls) in order
 	energy_error: float  # largest error of the energy book, see energy.EnergyBalance.largest [-]
@@ -44,6 +44,8 @@ class Run:
 	setup: float = 0.0  # wall time until the first step [s]
 	parameters: list = field(default_factory=list)  # (name, value with unit, meaning)
 	extra: dict = field(default_factory=dict)  # further figures for the summary
+	test: str = "compression"  # or "tension", where stress, strain and forces are positive in tension
+	broken: np.ndarray = None  # records of the broken bonds (broken_bonds.DTYPE), None where there are no bonds
 
 	@property
 	def strength(self) -> Strength:
@@ -87,7 +89,9 @@ class Run:
 			"setup_s": self.setup,
 			"ns_per_particle_step": 1e9 * self.seconds_per_step / self.particles,
 			"ns_per_degree_of_freedom_step": 1e9 * self.seconds_per_step / self.degrees_of_freedom,
-			"ucs_MPa": measures.ucs / 1e6,
+			"test": self.test,
+			"ucs_MPa": measures.ucs / 1e6 if self.test == "compression" else None,
+			"tensile_MPa": measures.ucs / 1e6 if self.test == "tension" else None,
 			"peak_passed": measures.peaked,
 			"young_GPa": measures.young / 1e9,
 			"strain_at_peak": measures.strain_at_peak,

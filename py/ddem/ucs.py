@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""The uniaxial compression test: crushes a sample between platens, keeps the record, and knows when to stop."""
+"""The uniaxial tests: crush a sample between platens, or pull it apart, keep the record, and know when to stop."""
 import time
 
 import numpy as np
@@ -59,6 +59,11 @@ class Specimen:
 		modes = self.sample.broken["mode"]
 		return {"bonds": self.sample.initial_bonds, "broken_in_tension": int((modes == "tension").sum()), "broken_in_shear": int((modes == "shear").sum())}
 
+	@property
+	def broken(self):
+		"""Records of the broken bonds, see :attr:`bonded.BondedSample.broken`; None where there are no bonds."""
+		return None if self.deformable else self.sample.broken
+
 
 class CompressionTest:
 	"""Runs the scene until the sample has failed, or to the largest strain::
@@ -69,6 +74,8 @@ class CompressionTest:
 		run = test.run()                # a runs.Run
 		print(run.summary()["ucs_MPa"])
 
+	Stress, strain and forces are positive in compression.
+
 	:param platens: of either model; they know the sample
 	:param duration: longest time to run [s]
 	:param stop: the sample has failed when its stress stays below this part of the peak; 0: run for the whole duration
@@ -76,6 +83,9 @@ class CompressionTest:
 	:param critical_dt: largest stable time step [s], to report
 	:param rows: records in the longest time
 	"""
+
+	kind = "compression"
+	sense = 1  #: in which stress, strain and forces of the platens, positive in compression, are recorded
 
 	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS):
 		if not duration > 0:
@@ -125,9 +135,10 @@ class CompressionTest:
 		"""Add a row to the record; called by the scene."""
 		energies = self.book.record()
 		row = {
-			"time": O.time, "strain": self.platens.strain, "stress": self.platens.stress, "force_top": self.platens.force_top,
-			"force_bottom": self.platens.force_bottom, "damage": self.specimen.damage,
-			"energy_drift": O.energy.total() - (self.book.start or 0.0)
+			"time": O.time,
+			**{name: self.sense * getattr(self.platens, name) for name in ("strain", "stress", "force_top", "force_bottom")},
+			"damage": self.specimen.damage,
+			"energy_drift": self.book.drift
 		}
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
 		if len(self.rows) % (self.longest // SNAPSHOTS) == 0:
@@ -159,6 +170,12 @@ class CompressionTest:
 		return Run(
 			model=specimen.model, title=specimen.title, particle=specimen.particle, particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=O.dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
-			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines], energy_error=self.book.largest, stopped=self.stopped,
-			extra=specimen.figures()
+			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
+			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(), test=self.kind, broken=specimen.broken
 		)
+
+
+class TensionTest(CompressionTest):
+	"""The same with platens that pull (a negative velocity): stress, strain and forces are positive in tension, and the strength is that in tension."""
+
+	kind, sense = "tension", -1

@@ -12,7 +12,6 @@ In a scene of one's own::
 or each in a YADE of its own, several at the same time, with :class:`SeparateYade`. SI units.
 """
 import dataclasses
-import hashlib
 import json
 import math
 import os
@@ -147,7 +146,7 @@ def perform(setup, values, case, cache=None):
 	platens, critical = {"rigid": _rigid, "deformable": _deformable}[setup.model](setup, values, case["seed"], velocity, cache)
 	O.dt = setup.safety * critical
 	duration = strain * setup.height / (2 * abs(velocity)) + 0.5 * setup.ramp
-	test = ucs.CompressionTest(Pulled(platens) if tension else platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS)
+	test = (ucs.TensionTest if tension else ucs.CompressionTest)(platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS)
 	run = test.run(progress=False)
 	measures = run.strength
 	if not measures.peaked:
@@ -188,7 +187,7 @@ def material(model, values, density):
 
 def _rigid(setup, values, seed, velocity, cache):
 	from yade import O, ddem
-	spheres = _packing(setup, seed, cache)
+	spheres = packing.prism(setup.width, setup.height, setup.depth, *setup.radii, seed=seed, fails=setup.fails, keep=cache)
 	made = material("rigid", values, setup.density / spheres.solid_fraction)
 	O.materials.append(made)
 	sample = ddem.bonded.append(spheres, made)
@@ -221,50 +220,6 @@ def _hold(sample, spheres, axis, dof):
 			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | {dof}))
 
 
-def _packing(setup, seed, cache):
-	"""The packing, from the folder *cache* where it was made before."""
-	size = (setup.width, setup.height, setup.depth)
-	if cache is None:
-		return packing.prism(*size, *setup.radii, seed=seed, fails=setup.fails)
-	key = hashlib.sha256(json.dumps([size, setup.radii, seed, setup.fails]).encode()).hexdigest()[:12]
-	path = os.path.join(cache, f"packing-seed{seed}-{key}.csv")
-	if not os.path.exists(path):
-		made = packing.prism(*size, *setup.radii, seed=seed, fails=setup.fails)
-		os.makedirs(cache, exist_ok=True)
-		unfinished = f"{path}.{os.getpid()}"
-		made.write(unfinished)
-		os.replace(unfinished, path)
-	read = packing.read(path)
-	return packing.Packing(read.centres, read.radii, lower=(0, 0, -setup.depth / 2), upper=(setup.width, setup.height, setup.depth / 2))
-
-
-class Pulled:
-	"""Platens that pull, as a test sees them: tension counts positive."""
-
-	def __init__(self, platens):
-		self._platens, self.sample = platens, platens.sample
-
-	@property
-	def stress(self):
-		"""Mean stress of both ends [Pa], tension positive."""
-		return -self._platens.stress
-
-	@property
-	def strain(self):
-		"""Lengthening over the height [-]."""
-		return -self._platens.strain
-
-	@property
-	def force_top(self):
-		"""Force that pulls the upper end [N]."""
-		return -self._platens.force_top
-
-	@property
-	def force_bottom(self):
-		"""Force that pulls the lower end [N]."""
-		return -self._platens.force_bottom
-
-
 # ---- each in a YADE of its own ----
 
 
@@ -285,11 +240,9 @@ class SeparateYade:
 	def settings(self):
 		"""What a result depends on beside the tuned parameters, as plain data: specimen, test, fixed parameters, and the plugin."""
 		from yade import config
-		plugin = hashlib.sha256()
-		for name in sorted(name for name in os.listdir(config.libDir) if "ddem" in name and name.endswith(".so")):
-			with open(os.path.join(config.libDir, name), "rb") as file:
-				plugin.update(file.read())
-		return {**self.setup.plain(), "fixed": self.fixed, "yade": config.version, "plugin": plugin.hexdigest()[:12]}
+
+		from .commandline import plugin
+		return {**self.setup.plain(), "fixed": self.fixed, "yade": config.version, "plugin": plugin()}
 
 	def __call__(self, values, case):
 		with tempfile.TemporaryDirectory(prefix="ddem-") as folder:

@@ -16,7 +16,7 @@ from yade.ddem.series import Series
 
 SCRIPT = os.path.join(os.path.dirname(__file__), "..", "..", "scripts", "ucs_compare.py")
 SMALL = ["--size", "0.025", "--radii", "0.005", "0.01", "--depth", "0.04", "--velocity", "4", "--no-pictures", "--no-vtk", "--no-progress"]
-PICTURES = {"stress_strain", "wall_forces", "damage", "energy", "final_damage", "evolution", "rotation", "engines"}
+PICTURES = {"stress_strain", "wall_forces", "damage", "broken_bonds", "energy", "final_damage", "evolution", "rotation", "engines"}
 FIGURES = {
 	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa", "strain_at_peak", "damage_at_peak", "damage_at_end",
 	"energy_error"

@@ -1,0 +1,110 @@
+# GPL v2 or later, see LICENSE.
+"""What scripts share: kinds of options with errors for people, the number of threads, and how to repeat a run."""
+import argparse
+import glob
+import hashlib
+import math
+import os
+import shlex
+import shutil
+import sys
+import tempfile
+
+import yade.config
+from yade import O
+
+_RESTARTED = "YADE_DDEM_RESTARTED"  # set in the environment of a YADE that was started by restart()
+
+
+def positive(text):
+	value = float(text)
+	if not (value > 0 and math.isfinite(value)):
+		raise argparse.ArgumentTypeError(f"{text} must be positive")
+	return value
+
+
+def not_negative(text):
+	value = float(text)
+	if not (value >= 0 and math.isfinite(value)):
+		raise argparse.ArgumentTypeError(f"{text} must not be negative")
+	return value
+
+
+def share(text):
+	value = float(text)
+	if not 0 <= value < 1:
+		raise argparse.ArgumentTypeError(f"{text} must be a part, from 0 to below 1")
+	return value
+
+
+def number(text):
+	value = float(text)
+	if not math.isfinite(value):
+		raise argparse.ArgumentTypeError(f"{text} must be finite")
+	return value
+
+
+def count(text):
+	value = int(text)
+	if value < 1:
+		raise argparse.ArgumentTypeError(f"{text} must be at least 1")
+	return value
+
+
+def seed(text):
+	value = int(text)
+	if value < 0:
+		raise argparse.ArgumentTypeError(f"{text} must not be negative")
+	return value
+
+
+def require_writable(parser, option, folder):
+	"""Make a folder, and complain about the option that names it where nothing can be written there."""
+	try:
+		os.makedirs(folder, exist_ok=True)
+		tempfile.TemporaryFile(dir=folder).close()
+	except OSError as error:
+		parser.error(f"argument {option}: cannot write into {folder}: {error.strerror}")
+
+
+def restart(threads):
+	"""Start the running script again, from its beginning, in a YADE of so many OpenMP threads, where this one has another number: it is fixed when YADE starts.
+
+	Returns where there is nothing to do.
+
+	:raises RuntimeError: the second YADE has not got them either
+	"""
+	if threads == O.numThreads:
+		return
+	if os.environ.get(_RESTARTED):
+		raise RuntimeError(f"YADE runs on {O.numThreads} threads, not on {threads}; something limits them, such as OMP_THREAD_LIMIT")
+	program, *options = sys.yade_argv[:len(sys.yade_argv) - len(sys.argv)]
+	sys.stdout.flush()
+	shutil.rmtree(os.path.dirname(O.tmpFilename()), ignore_errors=True)  # this YADE's folder in /tmp, which it removes when it exits by itself
+	os.execve(shutil.which(program) or program, [program, *options, f"-j{threads}", *sys.argv], {**os.environ, _RESTARTED: "1"})  # the last -j counts
+
+
+def command(threads=None):
+	"""The command line that repeats this run; *threads* of the launcher, where the script has no option for them."""
+	launcher = ["--threads", str(threads)] if threads and threads > 1 else []
+	script = os.path.relpath(sys.argv[0])
+	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", *launcher, script, *sys.argv[1:]])
+
+
+def plain(options):
+	"""Options as plain data for a JSON file."""
+	return {name: list(value) if isinstance(value, tuple) else value for name, value in vars(options).items()}
+
+
+def versions(*modules):
+	"""Name -> version of YADE, the plugin's libraries (a hash of them), Python and *modules*."""
+	return {"YADE": yade.config.version, "plugin": plugin(), "Python": sys.version.split()[0], **{module.__name__: module.__version__ for module in modules}}
+
+
+def plugin():
+	"""Twelve digits that change with any rebuilt library of the plugin."""
+	digest = hashlib.sha256()
+	for path in sorted(glob.glob(os.path.join(yade.config.libDir, "*ddem*.so"))):
+		with open(path, "rb") as file:
+			digest.update(file.read())
+	return digest.hexdigest()[:12]
