@@ -26,17 +26,18 @@ void RampedTranslationEngine::apply(const vector<Body::id_t>& bodies)
 	if (math::isnan(startTime)) startTime = scene->time;
 	const Real now = speed(scene->time);
 	if (scene->trackEnergy) {
-		// Mean of the speeds before and after this step: with forces at the step itself this is the work that leapfrog sees.
-		const Real mean   = 0.5 * (speed(scene->time - scene->dt) + now);
 		const auto newton = std::find_if(
 		        scene->engines.begin(), scene->engines.end(), [](const auto& e) { return bool(dynamic_cast<NewtonIntegrator*>(e.get())); });
 		const int mask  = newton == scene->engines.end() ? 0 : static_cast<const NewtonIntegrator&>(**newton).mask;
-		Real      power = 0;
+		Real      force = 0;
 		scene->forces.sync();
 		for (const auto id : bodies)
-			if (mask <= 0 || Body::byId(id, scene)->maskCompatible(mask)) power -= scene->forces.getForce(id).dot(translationAxis) * mean;
-		work += power * scene->dt;
-		scene->energy->add(-power * scene->dt, "externalWork", workIx, false);
+			if (mask <= 0 || Body::byId(id, scene)->maskCompatible(mask)) force -= scene->forces.getForce(id).dot(translationAxis);
+		// Work up to the present positions: between two steps leapfrog moves at one speed and sees the mean of their forces.
+		const Real done = 0.5 * (lastForce + force) * speed(scene->time - scene->dt) * scene->dt;
+		lastForce       = force;
+		work += done;
+		scene->energy->add(-done, "externalWork", workIx, false);
 	}
 	for (const auto id : bodies)
 		Body::byId(id, scene)->state->vel += now * translationAxis;

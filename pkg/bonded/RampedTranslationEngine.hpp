@@ -27,6 +27,7 @@ public:
 		((Real,startTime,NaN,,"Time at which the motion starts [s]; NaN: at the engine's first step"))
 		((bool,ahead,false,,"Whether the bodies are a step ahead: in each step they reach the place that they would otherwise have at its end before forces act, as the walls of ESyS-Particle do"))
 		((Real,work,0,Attr::readonly,"Work done on the rest of the scene so far [J], booked while energy is tracked"))
+		((Real,lastForce,0,(Attr::readonly|Attr::hidden),"Force along the axis that the bodies exerted in the last step [N]"))
 		((int,workIx,-1,(Attr::hidden|Attr::noSave),"Place of externalWork in the energy tracker")),
 		/*ctor*/ translationAxis = Vector3r(0,1,0); velocity = 0;,
 		.add_property("speed",&RampedTranslationEngine::currentSpeed,"Speed at the present time [m/s], along :yref:`translationAxis<TranslationEngine.translationAxis>`")

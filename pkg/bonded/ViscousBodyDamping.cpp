@@ -79,7 +79,10 @@ void ViscousBodyDamping::action()
 		scene->forces.addTorqueUnsynced(int(id), dragLoad(angular, state.angVel, torque, state.inertia, state, true));
 		if (book) loss += dragLoss(linear, state.vel, force, mass, state, false) + dragLoss(angular, state.angVel, torque, state.inertia, state, true);
 	}
-	if (book) scene->energy->add(loss, "bodyDamping", lossIx, false);
+	if (!book) return;
+	// Half of this step's loss comes after the present positions; see RampedTranslationEngine.
+	scene->energy->add(0.5 * (lastLoss + loss), "bodyDamping", lossIx, false);
+	lastLoss = loss;
 }
 
 } // namespace yade

@@ -21,6 +21,7 @@ public:
 		"Errors: ValueError for negative coefficients; an engine order in which forces would be missed stops the run. Limits: spheres (equal moments of inertia) and clump-free scenes.",
 		((Real,viscosity,2,Attr::triggerPostLoad,"Coefficient :math:`\\gamma` of translation [1/s]. The default is ESyS-Particle's 0.002 /ms."))
 		((Real,rotationalViscosity,2,Attr::triggerPostLoad,"Coefficient :math:`\\gamma_r` of rotation [1/s]"))
+		((Real,lastLoss,0,(Attr::readonly|Attr::hidden),"Energy taken away in the last step [J]"))
 		((int,lossIx,-1,(Attr::hidden|Attr::noSave),"Place of bodyDamping in the energy tracker")),
 		/*ctor*/
 	);

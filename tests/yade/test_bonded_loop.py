@@ -7,8 +7,10 @@ import pytest
 
 from yade import (
 	BondedInteractionLoop, BondedMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
-	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, PyRunner, Vector3, utils)
+	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, Vector3, utils)
 from yade.ddem import bonded, packing
+
+from recording import run_recording
 
 CONVENTIONS = ("consistent", "esys")
 
@@ -114,15 +116,12 @@ def test_shows_bonds_to_engines_that_may_look():
 	sample, platens = specimen()
 	seen = []
 	pair = bonded.law().bonds()["ids"][10]
-	__builtins__["look"] = lambda: seen.append((O.iter, O.interactions[pair].phys.normalForce.norm(), O.interactions[pair].geom.contactPoint[1]))
-	O.engines = O.engines + [PyRunner(command="look()", iterPeriod=7)]
-	O.run(50, True)
+	run_recording(50, 7, lambda: seen.append((O.iter, O.interactions[pair].phys.normalForce.norm(), O.interactions[pair].geom.contactPoint[1])))
 	rest = []
 	sample, platens = specimen()
 	for iteration, *_ in seen:
 		O.run(iteration + 1 - O.iter, True)
 		rest.append((iteration, O.interactions[pair].phys.normalForce.norm(), O.interactions[pair].geom.contactPoint[1]))
-	del __builtins__["look"]
 	assert len(seen) >= 7 and seen == rest
 
 

@@ -7,8 +7,10 @@ import os
 import numpy as np
 import pytest
 
-from yade import BondedMat, O, PyRunner, ddem
+from yade import BondedMat, O
 from yade.ddem import bonded, measures, packing
+
+from recording import run_recording
 
 DATA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "data", "esys")
 AREA = 1e-4  # of the loaded face [m²]
@@ -48,13 +50,7 @@ def crush(run):
 	"""Strain, stress [MPa] and number of broken bonds at every record of the reference run."""
 	sample, platens = scene(run)
 	period, records = int(run["record_period"]), []
-	record = PyRunner(command="crush_record()", iterPeriod=period, firstIterRun=period - 1)
-	O.engines = O.engines[:-1] + [record] + O.engines[-1:]  # walls are where they were for the forces, as in ESyS-Particle's records
-	__builtins__["crush_record"] = lambda: records.append((platens.strain, platens.stress / 1e6, bonded.law().brokenCount()))
-	try:
-		O.run(int(run["steps"]), True)
-	finally:
-		del __builtins__["crush_record"]
+	run_recording(int(run["steps"]), period, lambda: records.append((platens.strain, platens.stress / 1e6, bonded.law().brokenCount())))
 	return np.array(records).T
 
 
