@@ -79,20 +79,27 @@ for size in options.triangles:
 # bonds at rest: what is measured is the law of bonds that hold
 steps = 50 if options.quick else 200
 spheres = ddem.packing.prism(0.03, 0.06, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
-O.reset()
-O.materials.append(BondedMat(label="rock"))
-sample = ddem.bonded.append(spheres, "rock")
-O.engines = ddem.bonded.engines()
-O.dt = 1e-9
-loop = next(e for e in O.engines if isinstance(e, InteractionLoop))
-row("InteractionLoop, rigid bonds (normal, shear, bending, torsion)", "bonds", len(sample.bonds), measure(loop, len(sample.bonds), steps))
+for convention, kind in (("consistent", BondedInteractionLoop), ("esys", BondedInteractionLoop), ("consistent", InteractionLoop)):
+	O.reset()
+	O.materials.append(BondedMat(label="rock", density=1e6))
+	sample = ddem.bonded.append(spheres, "rock")
+	O.engines = ddem.bonded.engines(convention=convention)
+	if kind is InteractionLoop:  # bonds one by one, through the functors
+		loop = O.engines[2]
+		O.engines = O.engines[:2] + [InteractionLoop(loop.geomDispatcher.functors, loop.physDispatcher.functors, loop.lawDispatcher.functors)] + O.engines[3:]
+	O.dt = 1e-9
+	row(f"{kind.__name__}, rigid bonds, {convention}", "bonds", len(sample.bonds), measure(O.engines[2], len(sample.bonds), steps))
+	if convention == "consistent" and kind is BondedInteractionLoop:
+		row("whole step of bonded spheres", "spheres", len(sample), measure(None, len(sample), steps))
 
 O.reset()
 O.materials.append(JCFpmMat(young=1e11, poisson=0.2, cohesion=1e9, tensileStrength=1e9, frictionAngle=0.7, density=2600))
 for centre, radius in zip(spheres.centres, spheres.radii):
 	O.bodies.append(utils.sphere(centre, radius))
-loop = InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.01)], [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
-	[Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM()])
+loop = InteractionLoop(
+	[Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.01)], [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
+	[Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM()]
+)
 O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.01)]), loop, NewtonIntegrator()]
 O.dt = 1e-9
 O.run(1, True)
