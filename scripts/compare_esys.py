@@ -3,7 +3,7 @@
 """Crush the same sample of bonded spheres in ESyS-Particle and here, with the same parameters, and compare results and cost.
 
 Run:      scripts/ddem run scripts/compare_esys.py                    (half a minute; installs Debian's esys-particle the first time, 300 MB to download)
-          scripts/ddem run --threads 2 scripts/compare_esys.py        (two threads here, two workers and a master there)
+          scripts/ddem run scripts/compare_esys.py --threads 2        (two threads here, two workers and a master there)
           scripts/ddem run scripts/compare_esys.py --particles P.csv --bonds B.csv --length-unit mm
           scripts/ddem run scripts/compare_esys.py --help             (all options)
 Writes:   a table here, and in out/compare_esys: summary.json, comparison.png, esys.csv and yade.csv with both curves, esys/ with input and output of the peer.
@@ -29,7 +29,8 @@ import time
 from tqdm import tqdm
 
 from yade import ddem
-from yade.ddem import plots
+from yade.ddem import commandline, plots
+from yade.ddem.commandline import count, not_negative, positive, require_writable, seed
 from yade.ddem.esys import comparison
 
 SIZE = (0.010, 0.020, 0.010)  # of a prism made here [m]
@@ -39,6 +40,7 @@ GAP = 5e-6  # up to which spheres are bonded [m]: the tutorial's 0.005 mm
 
 def main():
 	options = read_options()
+	commandline.restart(options.threads)
 	try:
 		setup = read_setup(options)
 	except (OSError, ValueError) as error:
@@ -135,7 +137,9 @@ def report(theirs, ours, options):
 	plots.save(comparison.picture(theirs, ours), picture)
 	setup = theirs.setup
 	summary = {
-		"options": vars(options),
+		"command": commandline.command(),
+		"options": commandline.plain(options),
+		"versions": {**commandline.versions(), "ESyS-Particle": ddem.esys.version()},
 		"particles": len(setup.packing),
 		"bonds": len(setup.packing.bonds),
 		"esys": comparison.figures(theirs),
@@ -144,7 +148,7 @@ def report(theirs, ours, options):
 		"time_ratio_yade_to_esys": ours.nanoseconds / theirs.nanoseconds,
 	}
 	with open(os.path.join(options.out, "summary.json"), "w") as file:
-		json.dump(summary, file, indent="\t", default=list)
+		json.dump(summary, file, indent="\t")
 	print(f"\n{comparison.table(theirs, ours)}\n\nWritten to {options.out}")
 
 
@@ -161,8 +165,8 @@ def read_options():
 	run = parser.add_argument_group("run")
 	run.add_argument("--out", default=os.path.join("out", "compare_esys"), metavar="DIR", help="folder for all files, made when missing; replaces older ones")
 	run.add_argument("--repeats", type=count, default=1, metavar="N", help="runs of each program; the fastest is timed, the results are the same")
-	run.add_argument("--workers", type=count, default=O.numThreads, metavar="N", help="processes that calculate in ESyS-Particle (here: threads, by "
-		"scripts/ddem run --threads N)")
+	run.add_argument("--threads", type=count, default=O.numThreads, metavar="N", help="of our run")
+	run.add_argument("--workers", type=count, metavar="N", help="processes that calculate in ESyS-Particle (default: as many as --threads)")
 	run.add_argument("--convention", choices=("esys", "consistent"), default="esys", help="our bonds: the same as ESyS-Particle's, or their improved version")
 	run.add_argument("--progress", action=argparse.BooleanOptionalAction, default=True, help="progress bars, where the terminal can show them")
 	sample = parser.add_argument_group("sample")
@@ -172,7 +176,7 @@ def read_options():
 	sample.add_argument("--gap", type=not_negative, default=GAP, metavar="M", help="without --bonds: spheres closer than this are bonded")
 	sample.add_argument("--size", type=positive, nargs=3, default=SIZE, metavar=("W", "H", "D"), help="width, height and depth of the packing made here")
 	sample.add_argument("--radii", type=positive, nargs=2, default=(0.4e-3, 2e-3), metavar=("MIN", "MAX"), help="range of its spheres' radii")
-	sample.add_argument("--seed", type=int, default=1, help="draws the packing")
+	sample.add_argument("--seed", type=seed, default=1, help="draws the packing")
 	sample.add_argument("--fails", type=count, default=5000, metavar="N", help="the packing is finished when so many spheres in a row found no place")
 	test = parser.add_argument_group("test")
 	test.add_argument("--steps", type=count, default=25000, metavar="N", help="time steps, a multiple of --every")
@@ -197,32 +201,9 @@ def read_options():
 		parser.error("argument --bonds: a file of bonds goes with a file of particles; add --particles")
 	if options.steps % options.every:
 		parser.error(f"argument --steps: {options.steps} is no multiple of --every {options.every}, so the last step would not be recorded")
-	try:
-		os.makedirs(options.out, exist_ok=True)
-	except OSError as error:
-		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	require_writable(parser, "--out", options.out)
+	options.workers = options.workers or options.threads
 	return options
-
-
-def count(text):
-	value = int(text)
-	if value < 1:
-		raise argparse.ArgumentTypeError(f"{text} must be at least 1")
-	return value
-
-
-def positive(text):
-	value = float(text)
-	if not (value > 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must be positive")
-	return value
-
-
-def not_negative(text):
-	value = float(text)
-	if not (value >= 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must not be negative")
-	return value
 
 
 if __name__ == "__main__":

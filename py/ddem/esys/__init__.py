@@ -116,6 +116,14 @@ def run(setup, folder, workers=1, progress=lambda step: None):
 	return read_output(setup, folder, workers)
 
 
+def version():
+	"""Version of the installed package, as "2.3.5+dfsg2-11"; None when no package manager knows it."""
+	try:
+		return subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "esys-particle"], capture_output=True, text=True, check=True).stdout or None
+	except (OSError, subprocess.CalledProcessError):
+		return None
+
+
 def write_input(setup, folder, workers=1):
 	"""Write what compression.py reads, in its units, into a folder; output of an earlier run is removed from it."""
 	os.makedirs(folder, exist_ok=True)

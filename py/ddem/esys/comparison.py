@@ -85,7 +85,7 @@ def _change(unit, first, second):
 	if first is None or second is None:
 		return ""
 	if unit == "%":
-		return f"{second - first:+.2g} points"
+		return f"{round(second - first, 4) + 0.0:+.3g} points"
 	if unit in ("s", "ns"):
 		return f"{second / first:.2f} times"
 	return f"{100 * (second / first - 1):+.2g} %"
