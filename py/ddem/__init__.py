@@ -22,7 +22,7 @@ from . import mesh
 
 # Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
 _LAZY = {
-	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "EnergyBalance": "energy",
+	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation", "EnergyBalance": "energy",
 	"materialpoint": None, "bonded": None, "packing": None, "esys": None, "plots": None, "report": None, "verification": None, "vtk": None,
 }
 

@@ -1,6 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """How well the energy book of a run closes."""
-from yade import DeformableEngine, DeformableNode, NewtonIntegrator, O, Vector3, utils
+from yade import DeformableEngine, DeformableNode, DeformableTriangle, NewtonIntegrator, O, Quaternion, Vector3, utils
 
 #: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
 EXTERNAL = ("externalWork", "gravWork")
@@ -72,7 +72,7 @@ def _at_rest():
 	still = Vector3.Zero
 	for body in O.bodies:
 		state = body.state
-		if isinstance(body.shape, DeformableNode) and state.pos != state.refPos:
+		if isinstance(body.shape, (DeformableNode, DeformableTriangle)) and (state.pos != state.refPos or state.ori != Quaternion.Identity):
 			return False
 		if state.vel == still and state.angVel == still:
 			continue

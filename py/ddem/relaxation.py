@@ -17,10 +17,9 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 	Cundall's local damping takes the motion out. Time means nothing meanwhile. Forces of other engines, O.forces.setPermF and :yref:`DeformableEngine.gravity` are
 	the loads; held nodes stay where they are, or move on as prescribed.
 
-	:param residual: largest force out of balance of any degree of freedom (or moment of a core over the triangle's size) over the mean force that the stresses
-		of a triangle transmit, |σ| h √S. Round-off of positions sets a floor of some 1e-15 over the strain.
-	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. Local damping of 0.3 needs about 10 periods of the slowest mode
-		for 1e-6 and then slows down, more of it stops earlier: 0.7 never gets below 1e-4, because it keeps stiff modes chattering.
+	:param residual: wanted :func:`out_of_balance` [-]. Round-off of positions sets a floor of some 1e-15 over the strain.
+	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. 0.1 is fastest for compact samples, 0.3 to 0.5 for slender ones, whose
+		slow modes need some ten periods; much damping keeps stiff modes chattering and stops at a residual of 1e-4 or so.
 	:param limit: steps after which to give up.
 	:raises ValueError: residual, damping or limit out of range, or no time step.
 	:raises RuntimeError: still out of balance after *limit* steps.
@@ -36,8 +35,7 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 		while True:
 			engine.damping = damping
 			O.run(max(FIRST, (O.iter - first) // 5) - 1, True)
-			engine.damping = 0
-			reached = _step_and_residual(engine)
+			reached = out_of_balance()
 			if reached <= residual:
 				return reached, O.iter - first
 			if O.iter - first >= limit:
@@ -49,20 +47,28 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 		engine.damping = before
 
 
-def _step_and_residual(engine):
-	"""One undamped step, whose change of velocities tells all forces out of balance; blocked degrees of freedom do not change."""
-	kinds = [("node", "Velocity", "nodeMass"), ("core", "Velocity", "coreMass")]
-	before = [engine.array(kind + name).copy() for kind, name, _ in kinds]
-	spins = engine.array("coreSpin").copy() if engine.rotation == "cosserat" else None
+def out_of_balance():
+	"""Largest force out of balance at any free degree of freedom (or moment on a core over the triangle's size), over the mean force that the stresses of a triangle
+	transmit, |σ| h √S [-]. Zero where neither is more than the round-off of positions, infinite where a load meets a sample that carries nothing yet.
+
+	It takes one undamped step, whose change of velocities tells all forces, whoever adds them.
+	"""
+	engine = _engine()
+	triangles = [O.bodies[int(i)] for i in engine.values("triangleIds")]
+	size, stress = np.sqrt(engine.values("area")), engine.values("stress")
+	section = size * np.array([body.shape.thickness for body in triangles])
+	norm = np.sqrt((stress[..., [0, 1]]**2).sum(axis=2) + 2 * stress[..., 3]**2).mean(axis=1)
+	noise = max(body.material.young for body in triangles) * np.spacing(np.abs(engine.array("nodePosition")).max()) / size.min()
+
+	velocities = {name: engine.array(name).copy() for name in ("nodeVelocity", "coreVelocity", "coreSpin") if name != "coreSpin" or engine.rotation == "cosserat"}
+	damping, engine.damping = engine.damping, 0.0
 	O.step()
-	forces = [
-		np.abs(engine.array(mass)[:, None] * (engine.array(kind + name) - old)).max() / O.dt for (kind, name, mass), old in zip(kinds, before)
-	]
-	size = np.sqrt(engine.values("area"))
-	if spins is not None:
-		inertia = np.array([O.bodies[int(i)].state.inertia[2] for i in engine.values("triangleIds")])
-		forces.append(np.abs(inertia * (engine.array("coreSpin") - spins) / size).max() / O.dt)
-	thickness = np.array([O.bodies[int(i)].shape.thickness for i in engine.values("triangleIds")])
-	stress = engine.values("stress")
-	transmitted = (np.sqrt((stress[..., [0, 1]]**2).sum(axis=2) + 2 * stress[..., 3]**2).mean(axis=1) * thickness * size).mean()
-	return max(forces) / transmitted if transmitted > 0 else (0.0 if max(forces) == 0 else math.inf)
+	engine.damping = damping
+	change = {name: engine.array(name) - before for name, before in velocities.items()}
+	forces = [np.abs(engine.array(kind + "Mass")[:, None] * change[kind + "Velocity"]).max() / O.dt for kind in ("node", "core")]
+	if "coreSpin" in change:
+		forces.append(np.abs(np.array([body.state.inertia[2] for body in triangles]) * change["coreSpin"] / size).max() / O.dt)
+	largest, transmitted, floor = max(forces), (norm * section).mean(), 100 * noise * section.mean()
+	if transmitted > floor:
+		return float(largest / transmitted)
+	return 0.0 if largest <= floor else math.inf
