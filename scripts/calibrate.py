@@ -9,8 +9,8 @@ Run:      scripts/ddem run scripts/calibrate.py --young 40e9 --ucs 60e6         
 Writes:   a line a point and a table here, and out/calibrate/calibration.html, calibration.json, and evaluations.jsonl with every evaluation.
 
         targets ──> start by scaling laws ──> virtual tests ──> all within tolerance? ── yes ──> parameters, sensitivities, line to paste
-                                                   ^                    | no
-                                                   └── least squares <──┘      in logarithms of parameters and measures, elasticities by finite differences
+                                                   ^                     | no
+                                                   └─ response surface <─┘      a plane through the logarithms of all points
 
 Each evaluation is a compression (or tension) test of the specimen in a YADE of its own, several at the same time. Ctrl-C loses nothing that was finished: the same
 command goes on from there, and other targets for the same specimen use what is known. Exit code: 0 the targets are met, 1 they are not (the nearest is shown, and

@@ -17,28 +17,36 @@
 	print(outcome.reached, outcome.best.values, outcome.why)
 
 Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is an elasticity
-d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search starts
-with steps by the scaling laws of the parameters, as long as each at least halves the largest miss. Then scipy's least squares in a box-shaped trust region takes
-over, with elasticities measured by finite differences, all columns at the same time; they are measured again where a step did not even halve what was missed.
-Steps of finite differences are large (8 %), because breaking of bonds is chaotic and small steps would measure its noise. The search stops at the first point
-that meets all targets.
+d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search
+starts with steps by the scaling laws of the parameters, as long as each at least halves the largest miss. Then elasticities are measured by finite
+differences, all at the same time, and a response surface takes over (Box and Wilson 1951): a plane through all points so far, near ones counting more, leads
+to the next point by scipy's bounded least squares. Breaking of bonds is chaotic: neighbouring parameters give strengths that differ by a per cent or two. So
+steps of finite differences are large, and planes average over what scatters where a Jacobian or a simplex would follow it. The search stops at the first
+point that meets all targets.
 """
 import math
 import time
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import lsq_linear
 
 from .evaluations import EvaluationError, OutOfBudget, Point
 
 DIGITS = 6  #: significant digits of parameters that are tried: more would say nothing, and keep a repeated start from recognising them
 _HALF = 0.5  # a step that leaves more than this of what was missed is a poor one
 _NOTHING = 0.05  # elasticities below it do not count
-_ALIKE = 0.05  # targets whose elasticities are independent by less than this part answer alike
+_ALIKE = 0.2  # targets whose elasticities differ in direction by less than this answer alike; noise of breaking bonds moves them by 0.1
 _NEAR = 0.01  # a parameter this close to a bound, in its logarithm, has hit it
-_SMALLEST_GAIN = 1e-2  # the search ends where a step lowers the sum of squares by less than this part
-_SMALLEST_STEP = 2e-3  # the search ends at steps of parameters below it, far below what finite differences see
+_SMALLEST_STEP = 2e-3  # a step of parameters below it leads nowhere, far below what finite differences see
+_RADIUS = 0.7  # of the first steps by models of the response: no parameter changes by more than a factor of two
+_CAUTION = 0.3  # a parameter changes by a factor of e only for more than this part of a tolerance
+_WIDER = 3  # times the usual step of finite differences is taken before the search gives up
+_PATIENCE = 6  # so many poor steps in a row end the search
+_PASSES = 3  # a model is made anew around the point to which it leads
+_SCATTER = 0.02  # of measures between neighbouring points, expected when points are weighted
+_CURVATURE = 0.5  # of measures over parameters, expected likewise
+_SPARE = 2  # points more than a plane needs, before their scatter about it says something
 
 
 @dataclass(frozen=True)
@@ -81,7 +89,7 @@ class Target:
 class Step:
 	"""A point the search looked at, and why."""
 	number: int
-	purpose: str  # "start", "scaling", "search", or "sensitivity"
+	purpose: str  # "start", "scaling", "search" (by the response surface), or "sensitivity" (a finite difference)
 	point: Point
 	parameter: str = None  # the one that was changed, for a sensitivity
 
@@ -93,8 +101,8 @@ class Outcome:
 	best: Point  # the point closest to the targets; None when none could be measured
 	why: list  # sentences on why it ended
 	steps: list  # all of :class:`Step`, in order
-	elasticities: np.ndarray  # d ln(target)/d ln(parameter), a row a target, a column a parameter; None when not measured
-	elasticities_at: dict  # parameters around which they were measured
+	elasticities: np.ndarray  # d ln(target)/d ln(parameter) around the best point, a row a target, a column a parameter; None when not measured
+	errors: np.ndarray  # their standard errors, from the scatter of all points about the response surface; NaN where there are too few points
 	parameters: list
 	targets: list
 	seconds: float  # of the search [s]
@@ -123,7 +131,7 @@ class Calibration:
 			raise ValueError(f"step = {step} of finite differences must be a part of the parameters, between 0 and 1")
 		self.parameters, self.targets, self.bench, self.step, self.sensitivities = list(parameters), list(targets), bench, step, sensitivities
 		self.tell = tell or (lambda step: None)
-		self.steps, self.best, self._jacobian, self._jacobian_at = [], None, None, None
+		self.steps, self.best, self._around = [], None, None  #: _around: where finite differences were taken last
 		self._lower, self._upper = (np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper"))
 
 	def run(self):
@@ -131,19 +139,20 @@ class Calibration:
 		begin, reached, why = time.perf_counter(), True, []
 		try:
 			start = self._scale(np.log([p.start for p in self.parameters]))
-			self._least_squares(start)
+			self._respond(start)
 			reached, why = False, self._explain()
 		except _Reached:
 			pass
 		except (OutOfBudget, EvaluationError) as error:
 			reached, why = False, [str(error)]
-		if reached and self.sensitivities and self._jacobian is None:
+		if reached and self.sensitivities and self._around is None:
 			try:
 				self._differences(self._logs(self.best.values), stop=False)
 			except (OutOfBudget, EvaluationError) as error:
 				why.append(f"sensitivities could not be measured: {error}")
+		elasticities, errors = (None, None) if self._around is None else self.response(self._logs(self.best.values))[1:]
 		return Outcome(
-			reached, self.best, why, self.steps, self._jacobian, self._jacobian_at, self.parameters, self.targets, time.perf_counter() - begin,
+			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets, time.perf_counter() - begin,
 			{} if self.best is None else self._bounds_hit(self.best)
 		)
 
@@ -168,40 +177,67 @@ class Calibration:
 				break
 		return x
 
-	def _least_squares(self, start):
-		"""scipy's trust-region search from log-parameters *start*.
-
-		The variables are 1 + ln(p/p_start): scipy takes the first trust region and the smallest step relative to their length.
-		"""
+	def _respond(self, x):
+		"""Steps by linear models of the response, from log-parameters *x*, until nothing more is gained."""
+		self._differences(x)
 		tolerances = np.array([target.tolerance for target in self.targets])
-		missed = math.inf  # at the point before
+		radius, idle, wide = _RADIUS, 0, False
+		while True:
+			x, worst = self._logs(self.best.values), self._worst(self.best)
+			there, expected = self._aim(x, radius, tolerances)
+			near = min(np.abs(self._logs(step.point.values) - there).max() for step in self.steps) < _SMALLEST_STEP
+			hopeless = near and np.abs(expected / tolerances).max() > 1  # the model leads nowhere new, and not to the targets either
+			known = len(self.steps)
+			if not hopeless and idle < _PATIENCE:
+				point = self._look([there], "search")[0]
+			if len(self.steps) == known:  # no new point: another look from farther off, once
+				if wide:
+					return
+				self._differences(x, _WIDER)
+				wide, idle = True, 0
+				continue
+			size, surprise = np.abs(there - x).max(), math.inf if point.error else np.abs(self._misses(point) - expected).max()
+			radius = 0.5 * size if surprise > 3 * _SCATTER else max(radius, min(2 * size, 1.0))
+			idle = 0 if self._worst(self.best) < 0.9 * worst else idle + 1
+			moved = np.abs(self._logs(self.best.values) - self._logs(self._around)).max()
+			if idle == 2 and moved > math.log1p(self.step):
+				self._differences(self._logs(self.best.values))
 
-		def residuals(z):
-			point = self._look([start + z - 1], "search")[0]
-			return np.full(len(self.targets), np.nan) if point.error else self._misses(point) / tolerances  # NaN: scipy tries a shorter step
+	def _aim(self, x, radius, tolerances):
+		"""Log-parameters within *radius* of *x* and the bounds where the response, modelled around that place, comes closest to the targets; and its misses."""
+		there = x
+		for _ in range(_PASSES):
+			misses, slopes, _ = self.response(there)
+			matrix = np.vstack([slopes / tolerances[:, None], _CAUTION * np.eye(len(x))])
+			wanted = np.append((slopes @ (there - x) - misses) / tolerances, np.zeros(len(x)))
+			step = lsq_linear(matrix, wanted, bounds=(np.maximum(self._lower - x, -radius), np.minimum(self._upper - x, radius))).x
+			there, expected = x + step, misses + slopes @ (x + step - there)
+		return there, expected
 
-		def jacobian(z):
-			nonlocal missed
-			x = start + z - 1
-			now = np.linalg.norm(self._misses(self._look([x], "search")[0]) / tolerances)
-			poor = self._jacobian is None or now > _HALF * missed and np.abs(x - self._logs(self._jacobian_at)).max() > 0.5 * math.log1p(self.step)
-			if poor:
-				self._differences(x)
-			missed = now
-			return self._jacobian / tolerances[:, None]
+	def response(self, x):
+		"""Logarithmic misses at log-parameters *x*, elasticities around it, and their standard errors, of the plane through all points in the sense of weighted
+		least squares.
 
-		margin = 1e-9  # scipy wants a start inside the bounds
-		first = np.clip(np.ones(len(start)), 1 + self._lower - start + margin, 1 + self._upper - start - margin)
-		least_squares(
-			residuals, first, jac=jacobian, bounds=(1 + self._lower - start, 1 + self._upper - start), method="dogbox", xtol=_SMALLEST_STEP,
-			ftol=_SMALLEST_GAIN, gtol=1e-6
-		)
+		A point counts less the farther it is: what bends away from the plane grows with the square of the distance, what scatters does not.
+		"""
+		points = [step.point for step in self.steps if not step.point.error]
+		away = np.array([self._logs(point.values) for point in points]) - x
+		weights = 1 / np.hypot(_SCATTER, _CURVATURE * (away**2).sum(axis=1))
+		matrix = np.column_stack([np.ones(len(points)), away]) * weights[:, None]
+		values = np.array([self._misses(point) for point in points]) * weights[:, None]
+		plane = np.linalg.lstsq(matrix, values, rcond=None)[0]
+		spare = len(points) - matrix.shape[1]
+		error = np.full(plane.shape, np.nan)
+		if spare >= _SPARE:
+			variance = ((values - matrix @ plane)**2).sum(axis=0) / spare
+			error = np.sqrt(np.outer(np.diag(np.linalg.pinv(matrix.T @ matrix)), variance))
+		return plane[0], plane[1:].T + 0.0, error[1:].T  # no negative zeros
 
-	def _differences(self, x, stop=True):
+	def _differences(self, x, wider=1, stop=True):
 		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time, to the other side where a bound is near or
 		a point fails."""
 		base = self._look([x], "search", stop)[0]
-		x, width = self._logs(base.values), math.log1p(self.step)
+		x, width = self._logs(base.values), wider * math.log1p(self.step)
 		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
 		moved = [x + np.eye(len(x))[k] * signs[k] * width for k in range(len(x))]
 		points = self._look(moved, "sensitivity", stop)
@@ -211,9 +247,7 @@ class Calibration:
 				raise EvaluationError(
 					f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}"
 				)
-		change = np.array([self._misses(point) - self._misses(base) for point in points]).T
-		self._jacobian = change / np.array([self._logs(point.values)[k] - x[k] for k, point in enumerate(points)]) + 0.0  # no negative zeros
-		self._jacobian_at = base.values
+		self._around = base.values
 
 	# --- points
 	def _look(self, logs, purpose, stop=True, columns=None):
@@ -264,20 +298,21 @@ class Calibration:
 	def _explain(self):
 		"""Sentences on why the search ended at the best point without meeting all targets."""
 		why, best = [], self.best
+		slopes = self.response(self._logs(best.values))[1]
 		hit, missed = self._bounds_hit(best), [i for i, target in enumerate(self.targets) if abs(target.miss(best)) > target.tolerance]
-		gradient = self._jacobian.T @ (self._misses(best) / np.square([target.tolerance for target in self.targets]))  # downhill is against it
+		gradient = slopes.T @ (self._misses(best) / np.square([target.tolerance for target in self.targets]))  # downhill is against it
 		for k, parameter in enumerate(self.parameters):
 			side = hit.get(parameter.name)
-			if side and (-gradient[k] > 0) == (side == "upper") and abs(self._jacobian[missed, k]).max() > _NOTHING:
+			if side and (-gradient[k] > 0) == (side == "upper") and abs(slopes[missed, k]).max() > _NOTHING:
 				why.append(f"the {side} bound of {parameter.name}, {getattr(parameter, side):g}, keeps it from going further")
-		size = np.abs(self._jacobian).max(axis=1)
+		size = np.abs(slopes).max(axis=1)
 		for i in missed:
 			if size[i] < _NOTHING:
 				why.append(f"no tuned parameter moves {self.targets[i].name} (all elasticities are below {_NOTHING:g}): tune another one")
 		rows = [i for i in range(len(self.targets)) if size[i] >= _NOTHING]
 		for a in rows:
 			for b in rows:
-				if a < b and (a in missed or b in missed) and self._alike(a, b):
+				if a < b and (a in missed or b in missed) and _alike(slopes[a], slopes[b]):
 					names = f"{self.targets[a].name} and {self.targets[b].name}"
 					why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
 		if not why:
@@ -287,14 +322,14 @@ class Calibration:
 			)
 		return why
 
-	def _alike(self, a, b):
-		"""Whether two targets have proportional elasticities."""
-		one, two = (self._jacobian[i] / np.linalg.norm(self._jacobian[i]) for i in (a, b))
-		return np.linalg.norm(one - np.sign(one @ two) * two) < _ALIKE
-
-
 class _Reached(Exception):
 	"""All targets are met."""
+
+
+def _alike(one, two):
+	"""Whether two rows of elasticities point in the same direction, or in opposite ones."""
+	one, two = one / np.linalg.norm(one), two / np.linalg.norm(two)
+	return np.linalg.norm(one - np.sign(one @ two) * two) < _ALIKE
 
 
 def _rounded(value):

@@ -125,11 +125,17 @@ class CalibrationReport:
 			rows.append((q.name, q.symbol, q.unit, value, f"{parameter.start / q.factor:.4g}", bounds, f"at its {hit} bound" if hit else ""))
 		return rows
 
+	@property
+	def errors_known(self):
+		"""Whether there were points enough for standard errors of the elasticities."""
+		return self.outcome.errors is not None and bool(np.isfinite(self.outcome.errors).all())
+
 	def elasticity_rows(self):
 		"""(measure, one elasticity a parameter) as text; empty where they were not measured."""
 		if self.outcome.elasticities is None:
 			return []
-		return [(q.symbol, [f"{round(value, 2) + 0.0:+.2f}".replace("-", "−") for value in row]) for q, row in zip(self.measures, self.outcome.elasticities)]
+		rows = zip(self.measures, self.outcome.elasticities, self.outcome.errors)
+		return [(q.symbol, [_with_error(value, error) for value, error in zip(values, errors)]) for q, values, errors in rows]
 
 	def table(self):
 		"""Targets, parameters and sensitivities, for a terminal."""
@@ -171,7 +177,10 @@ class CalibrationReport:
 				t.name: {p.name: float(value) for p, value in zip(outcome.parameters, row)}
 				for t, row in zip(outcome.targets, outcome.elasticities)
 			},
-			"elasticities_at": outcome.elasticities_at,
+			"elasticity_errors": None if outcome.elasticities is None else {
+				t.name: {p.name: float(error) if math.isfinite(error) else None for p, error in zip(outcome.parameters, row)}
+				for t, row in zip(outcome.targets, outcome.errors)
+			},
 			"evaluations": {
 				"made": self.bench.ran, "reused": self.bench.reused, "failed": self.bench.failed, "at_the_same_time": self.bench.jobs,
 				"cases_a_point": self.bench.cases, "seconds_added_up": self.bench.seconds, "wall_s": outcome.seconds
@@ -279,10 +288,13 @@ def sensitivities(outcome, model):
 		width = 0.7 / count
 		for k, (target, row) in enumerate(zip(outcome.targets, outcome.elasticities)):
 			x = np.arange(len(names)) + (k - (count - 1) / 2) * width
-			bars = ax.bar(x, row, 0.9 * width, color=plots.COLOURS[k % len(plots.COLOURS)], label=_mathematical(MEASURES[target.name].symbol))
+			errors = outcome.errors[k] if np.isfinite(outcome.errors[k]).all() else None
+			look = {"color": plots.COLOURS[k % len(plots.COLOURS)], "error_kw": {"elinewidth": 0.7, "capsize": 2, "ecolor": "0.2"}}
+			bars = ax.bar(x, row, 0.9 * width, yerr=errors, label=_mathematical(MEASURES[target.name].symbol), **look)
 			ax.bar_label(bars, [f"{round(value, 2) + 0.0:.2f}".replace("-", "−") for value in row], padding=1.5, fontsize=6.5)
 		ax.axhline(0, color="0.2", linewidth=0.6)
-		low, high = min(0.0, outcome.elasticities.min()), max(1.0, outcome.elasticities.max())
+		margin = np.nan_to_num(outcome.errors)
+		low, high = min(0.0, (outcome.elasticities - margin).min()), max(1.0, (outcome.elasticities + margin).max())
 		ax.set_ylim(low - 0.12 * (high - low) * (low < 0), high + 0.12 * (high - low))
 		ax.set_xticks(range(len(names)), [f"{name} {_mathematical(TUNABLES[model][name].symbol)}" for name in names])
 		ax.set_xlim(-0.5, len(names) - 0.5)
@@ -303,6 +315,11 @@ def _beyond(outcome, sign, linear):
 	"""How far the picture reaches on one side of zero."""
 	found = [sign * 100 * target.miss(step.point) for step in outcome.steps if not step.point.error for target in outcome.targets]
 	return 1.4 * max(found + [1.6 * linear])
+
+
+def _with_error(value, error):
+	text = f"{round(value, 2) + 0.0:+.2f}" + (f" ± {error:.2f}" if math.isfinite(error) else "")
+	return text.replace("-", "−")
 
 
 def _parts(symbol):
