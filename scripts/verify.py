@@ -2,14 +2,14 @@
 # needs: freefem++
 """See deformable triangles and the concrete law hold: cases with exact, published or independent solutions, each with its error and tolerance.
 
-Run:      scripts/ddem run scripts/verify.py                          (the quick cases: about a minute)
-          scripts/ddem run scripts/verify.py --all --report out/verify   (all cases, and a page with pictures)
-          scripts/ddem run scripts/verify.py --list                   (what there is)
-          scripts/ddem run scripts/verify.py --case kirsch cantilever    (some)
+Run:      scripts/ddem run scripts/verify.py                                (the quick cases: half a minute)
+          scripts/ddem run scripts/verify.py --all --report out/verify      (all cases, and a page with pictures)
+          scripts/ddem run scripts/verify.py --list                         (what there is)
+          scripts/ddem run scripts/verify.py --case kirsch cantilever       (some)
 Writes:   a table here; with --json FILE a list of {case, quantity, value, reference, error, tolerance, passed, source, wall_s}; with --report DIR
           DIR/verification.html, which holds everything, and its pictures as files.
-Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A case is a small file in py/ddem/verification/cases, which reads as an example and says
-          what it shows, where its reference comes from and what to expect.
+Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A case is a small file in py/ddem/verification/cases, which reads as an
+          example and says what it shows, where its reference comes from and what to expect.
 """
 import argparse
 import json
@@ -50,9 +50,11 @@ def main():
 def read_options():
 	"""Options from the command line; complains about them before anything runs."""
 	parser = argparse.ArgumentParser(
-		prog="scripts/ddem run scripts/verify.py", usage="%(prog)s [--list | --case NAME … | --all] [--json FILE] [--report DIR]",
+		prog="scripts/ddem run scripts/verify.py",
+		usage="%(prog)s [--list | --case NAME … | --all] [--json FILE] [--report DIR]",
 		description="Run verification cases: each compares a result with a reference whose source is named. Without --case and --all: those that take seconds.",
-		allow_abbrev=False, epilog="The exit code is 0 when every check passed, 1 when one failed, 2 for a wrong call."
+		allow_abbrev=False,
+		epilog="The exit code is 0 when every check passed, 1 when one failed, 2 for a wrong call."
 	)
 	which = parser.add_mutually_exclusive_group()
 	which.add_argument("--list", action="store_true", help="name the cases, and run none")
@@ -62,7 +64,10 @@ def read_options():
 	parser.add_argument("--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing")
 	options = parser.parse_args()
 	try:
-		options.cases = [verification.find(name) for name in options.case] if options.case else [c for c in verification.all_cases() if options.all or not c.slow]
+		if options.case:
+			options.cases = [verification.find(name) for name in options.case]
+		else:
+			options.cases = [case for case in verification.all_cases() if options.all or not case.slow]
 	except ValueError as error:
 		parser.error(f"argument --case: {error}")
 	for name, folder in (("--json", os.path.dirname(options.json or "") or "."), ("--report", options.report)):
@@ -87,7 +92,9 @@ def print_list():
 def print_result(result):
 	for record in result.records:
 		mark = "ok    " if record.passed else "FAILED"
-		print(f"  {mark} {record.quantity:<58} {record.value:>13.6g}   reference {record.reference:>13.6g}   error {record.error:.1e} of {record.tolerance:.1e}")
+		print(
+			f"  {mark} {record.quantity:<58} {record.value:>13.6g}   reference {record.reference:>13.6g}   error {record.error:.1e} of {record.tolerance:.1e}"
+		)
 	if result.error:
 		print(result.error)
 	print(f"  {result.wall:.1f} s", flush=True)
@@ -103,7 +110,11 @@ def versions():
 	import numpy
 	import scipy
 	return {
-		"YADE": yade.config.version, "Python": sys.version.split()[0], "NumPy": numpy.__version__, "SciPy": scipy.__version__, "Matplotlib": matplotlib.__version__
+		"YADE": yade.config.version,
+		"Python": sys.version.split()[0],
+		"NumPy": numpy.__version__,
+		"SciPy": scipy.__version__,
+		"Matplotlib": matplotlib.__version__
 	}
 
 

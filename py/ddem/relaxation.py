@@ -14,12 +14,12 @@ FIRST = 500  #: steps before the first look at the residual; then there is one w
 def relax(residual=1e-6, damping=0.3, limit=200_000):
 	"""Run until every node and every core of the scene is in equilibrium with its loads, supports and prescribed positions; returns the residual and the steps.
 
-	Cundall's local damping takes the motion out. Time means nothing meanwhile. Forces of other engines, O.forces.setPermF and :yref:`DeformableEngine.gravity` are
-	the loads; held nodes stay where they are, or move on as prescribed.
+	Cundall's local damping takes the motion out. Time means nothing meanwhile. Forces of other engines, O.forces.setPermF and
+	:yref:`DeformableEngine.gravity` are the loads; held nodes stay where they are, or move on as prescribed.
 
 	:param residual: wanted :func:`out_of_balance` [-]. Round-off of positions sets a floor of some 1e-15 over the strain.
-	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. 0.1 is fastest for compact samples, 0.3 to 0.5 for slender ones, whose
-		slow modes need some ten periods; much damping keeps stiff modes chattering and stops at a residual of 1e-4 or so.
+	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. 0.1 is fastest for compact samples, 0.3 to 0.5 for slender
+		ones, whose slow modes need some ten periods; much damping keeps stiff modes chattering and stops at a residual of 1e-4 or so.
 	:param limit: steps after which to give up.
 	:raises ValueError: residual, damping or limit out of range, or no time step.
 	:raises RuntimeError: still out of balance after *limit* steps.
@@ -48,8 +48,9 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 
 
 def out_of_balance():
-	"""Largest force out of balance at any free degree of freedom (or moment on a core over the triangle's size), over the mean force that the stresses of a triangle
-	transmit, |σ| h √S [-]. Zero where neither is more than the round-off of positions, infinite where a load meets a sample that carries nothing yet.
+	"""Largest force out of balance at any free degree of freedom (or moment on a core over the triangle's size), over the mean force that the stresses of a
+	triangle transmit, |σ| h √S [-]. Zero where neither is more than the round-off of positions, infinite where a load meets a sample that carries nothing
+	yet.
 
 	It takes one undamped step, whose change of velocities tells all forces, whoever adds them.
 	"""
@@ -60,7 +61,9 @@ def out_of_balance():
 	norm = np.sqrt((stress[..., [0, 1]]**2).sum(axis=2) + 2 * stress[..., 3]**2).mean(axis=1)
 	noise = max(body.material.young for body in triangles) * np.spacing(np.abs(engine.array("nodePosition")).max()) / size.min()
 
-	velocities = {name: engine.array(name).copy() for name in ("nodeVelocity", "coreVelocity", "coreSpin") if name != "coreSpin" or engine.rotation == "cosserat"}
+	velocities = {
+		name: engine.array(name).copy() for name in ("nodeVelocity", "coreVelocity", "coreSpin") if name != "coreSpin" or engine.rotation == "cosserat"
+	}
 	damping, engine.damping = engine.damping, 0.0
 	O.step()
 	engine.damping = damping

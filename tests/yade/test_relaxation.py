@@ -74,7 +74,15 @@ def test_a_sample_that_flies_away_is_not_waited_for():
 	assert engine.damping == 0.1
 
 
-@pytest.mark.parametrize("settings, message", [({"residual": 0}, "residual = 0"), ({"damping": 1.0}, "damping = 1.0 must be positive and below 1"), ({"limit": -1}, "limit = -1")])
+@pytest.mark.parametrize(
+	"settings, message", [({
+	"residual": 0
+	}, "residual = 0"), ({
+	"damping": 1.0
+	}, "damping = 1.0 must be positive and below 1"), ({
+	"limit": -1
+	}, "limit = -1")]
+)
 def test_bad_settings_are_named(settings, message):
 	hanging_column()
 	with pytest.raises(ValueError, match=message):

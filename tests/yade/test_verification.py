@@ -3,7 +3,7 @@
 import json
 import os
 import re
-import subprocess
+import runpy
 
 import pytest
 
@@ -15,7 +15,9 @@ SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.
 KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s"]
 
 
-@pytest.mark.parametrize("case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow or case.needs else []) for case in verification.all_cases()])
+@pytest.mark.parametrize(
+	"case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow or case.needs else []) for case in verification.all_cases()]
+)
 def test_case(case):
 	result = verification.run(case, pictures=True)
 	assert not result.error, result.error
@@ -81,6 +83,7 @@ def test_what_does_not_hold_fails(function, count):
 
 
 def test_a_check_without_a_scale_is_refused():
+
 	def zero(check):
 		"""Zero"""
 		check("stress [Pa]", 1, 0, 1e-3, "free sides")
@@ -110,6 +113,7 @@ def test_page_holds_everything(tmp_path):
 	text = open(path, encoding="utf-8").read()
 	for expected in ("3 of 10 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"):
 		assert expected in text, expected
+	assert "σ<sub>yy</sub>" in text
 	assert text.count("data:image/png;base64,") == 2
 	assert sorted(os.listdir(tmp_path / "new")) == ["errors.png", "settling.png", "verification.html"]
 	# self-contained: nothing is loaded from elsewhere
@@ -119,21 +123,45 @@ def test_page_holds_everything(tmp_path):
 # --- the script
 
 
-def verify(*arguments):
-	return subprocess.run(["yade", "-n", "-x", SCRIPT, *arguments], capture_output=True, text=True, check=False)
+@pytest.fixture
+def verify(monkeypatch, capsys):
+	"""Runs the script as YADE would, in this process: (exit code, what it printed)."""
+
+	def call(*arguments):
+		monkeypatch.setattr("sys.argv", [SCRIPT, *arguments])
+		with pytest.raises(SystemExit) as end:
+			runpy.run_path(SCRIPT, run_name="__main__")
+		printed = capsys.readouterr()
+		return end.value.code, printed.out + printed.err
+
+	return call
 
 
-def test_script_writes_the_promised_list(tmp_path):
-	done = verify("--case", "settling", "--json", str(tmp_path / "deep" / "records.json"))
-	assert done.returncode == 0, done.stderr
+def test_script_writes_the_promised_list(verify, tmp_path):
+	code, printed = verify("--case", "settling", "rigid_motion", "--json", str(tmp_path / "deep" / "records.json"))
+	assert code == 0, printed
 	records = json.load(open(tmp_path / "deep" / "records.json", encoding="utf-8"))
-	assert [list(record) for record in records] == [KEYS] * 4
-	assert "4 of 4 checks passed" in done.stdout
+	assert [list(record) for record in records] == [KEYS] * 7
+	assert [record["case"] for record in records] == ["settling"] * 4 + ["rigid_motion"] * 3
+	assert "7 of 7 checks passed, 2 cases" in printed
 
 
-def test_script_complains_about_wrong_calls(tmp_path):
-	unknown = verify("--case", "setling")
-	assert unknown.returncode == 2 and "did you mean settling" in unknown.stderr
+def test_script_fails_when_a_check_fails(verify, monkeypatch):
+	monkeypatch.setattr(verification, "find", lambda name: made(wrong))
+	code, printed = verify("--case", "wrong")
+	assert code == 1
+	assert "FAILED: wrong" in printed and "0 of 2 checks passed" in printed
+
+
+def test_script_lists_the_cases(verify):
+	code, printed = verify("--list")
+	assert code == 0
+	assert all(case.name in printed and case.title in printed for case in verification.all_cases())
+
+
+def test_script_complains_about_wrong_calls(verify, tmp_path):
+	code, printed = verify("--case", "setling")
+	assert code == 2 and "did you mean settling" in printed
 	(tmp_path / "file").write_text("")
-	blocked = verify("--case", "settling", "--report", str(tmp_path / "file"))
-	assert blocked.returncode == 2 and "cannot write" in blocked.stderr
+	code, printed = verify("--case", "settling", "--report", str(tmp_path / "file"))
+	assert code == 2 and "cannot write" in printed

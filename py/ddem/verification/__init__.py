@@ -1,8 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Verification: cases with a reference each, which anybody can run.
 
-``scripts/ddem run scripts/verify.py`` runs them; so do the tests. To add one, put a file into ``cases/`` (one concept or family a file; every file there is found by
-itself). It reads like an example::
+``scripts/ddem run scripts/verify.py`` runs them; so do the tests. To add one, put a file into ``cases/`` (one concept or family a file; every file there is
+found by itself). It reads like an example::
 
 	# GPL v2 or later, see LICENSE.
 	\"\"\"A column under its own weight.\"\"\"
@@ -30,12 +30,12 @@ itself). It reads like an example::
 		check.note("What the numbers mean, a limit that they show.")
 
 - ``group`` is one of :data:`framework.GROUPS` and orders the report; ``seconds`` is the wall time that the case takes, rounded up. Cases that take longer than
-  :data:`framework.SLOW` seconds are slow: they run with ``--all`` only. One that calls another program says so with ``needs``; the tests run it among the slow ones, and
-  its Debian package stands in the header of scripts/verify.py.
-- The first line of the docstring is the case's title, the other paragraphs are its text in the report; *Reference:* and *Expect:* are paragraphs of it. What comes after
-  a blank line and is indented by a tab more is shown as a formula.
-- ``check(quantity, value, reference, tolerance, source)`` records a comparison: the error is |value − reference| over |reference|, or over ``scale`` where the reference
-  is zero or small. The quantity ends with its unit in brackets. A case passes when all its checks do; one that raises has failed.
+  :data:`framework.SLOW` seconds are slow: they run with ``--all`` only. One that calls another program says so with ``needs``; the tests run it among the
+  slow ones, and its Debian package stands in the header of scripts/verify.py.
+- The first line of the docstring is the case's title, the other paragraphs are its text in the report; *Reference:* and *Expect:* are paragraphs of it. What
+  comes after a blank line and is indented by a tab more is shown as a formula.
+- ``check(quantity, value, reference, tolerance, source)`` records a comparison: the error is |value − reference| over |reference|, or over ``scale`` where
+  the reference is zero or small. The quantity ends with its unit in brackets. A case passes when all its checks do; one that raises has failed.
 - ``check.picture(draw, caption)`` calls ``draw()``, which returns a matplotlib figure or axes, at once and off the clock, and only where pictures are wanted.
 - The scene is empty when a case begins; a case may call O.reset() as often as it likes. What it needs of others is in :mod:`tools`.
 - Further arguments of the function are settings with a default (mesh size, treatment of rotation …), which ``verification.run(name, size=0.005)`` may change.

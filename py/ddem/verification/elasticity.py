@@ -1,8 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Exact solutions of plane-strain elasticity, and what follows from the elastic constants.
 
-Plane fields come from the complex potentials φ and ψ of Kolosov and Muskhelishov (N. I. Muskhelishov, Some Basic Problems of the Mathematical Theory of Elasticity, 1953,
-§ 32), so that equilibrium and compatibility hold by construction::
+Plane fields come from the complex potentials φ and ψ of Kolosov and Muskhelishov (N. I. Muskhelishov, Some Basic Problems of the Mathematical Theory of
+Elasticity, 1953, § 32), so that equilibrium and compatibility hold by construction::
 
 	2μ (u + i v) = κ φ(z) − z conj φ'(z) − conj ψ(z),   κ = 3 − 4ν
 	σ_xx + σ_yy = 4 Re φ'(z),   σ_yy − σ_xx + 2 i σ_xy = 2 (conj(z) φ''(z) + ψ'(z))
@@ -40,8 +40,8 @@ def kirsch(material, stress, radius):
 	"""Infinite plate with a hole at the origin, pulled by *stress* [Pa] along x (Kirsch 1898; Muskhelishov § 56a)."""
 	s, a = stress, radius
 	return PlaneField(
-		material, lambda z: s / 4 * (z + 2 * a**2 / z), lambda z: s / 4 * (1 - 2 * a**2 / z**2), lambda z: s * a**2 / z**3,
-		lambda z: -s / 2 * (z + a**2 / z - a**4 / z**3), lambda z: -s / 2 * (1 - a**2 / z**2 + 3 * a**4 / z**4)
+		material, lambda z: s / 4 * (z + 2 * a**2 / z), lambda z: s / 4 * (1 - 2 * a**2 / z**2), lambda z: s * a**2 / z**3, lambda z: -s / 2 *
+		(z + a**2 / z - a**4 / z**3), lambda z: -s / 2 * (1 - a**2 / z**2 + 3 * a**4 / z**4)
 	)
 
 
@@ -49,7 +49,9 @@ def exponential(material, stress, length):
 	"""A smooth field with all components, which grows by e over *length* [m]; φ = S ℓ e^{z/ℓ}, ψ = i S ℓ e^{z/ℓ}/2."""
 	s, l = stress, length
 	grow = lambda z: np.exp(z / l)
-	return PlaneField(material, lambda z: s * l * grow(z), lambda z: s * grow(z), lambda z: s / l * grow(z), lambda z: 0.5j * s * l * grow(z), lambda z: 0.5j * s * grow(z))
+	return PlaneField(
+		material, lambda z: s * l * grow(z), lambda z: s * grow(z), lambda z: s / l * grow(z), lambda z: 0.5j * s * l * grow(z), lambda z: 0.5j * s * grow(z)
+	)
 
 
 def plane_modulus(material):

@@ -1,8 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Plane-strain elasticity by FreeFem++ (F. Hecht, New development in FreeFem++, J. Numer. Math. 20, 2012): the independent finite element code of the cases.
 
-Debian's package is freefem++. Nothing of the plugin is in here: FreeFem++ gets a mesh, materials, loads and supports as text files and a variational form in its own
-language, assembles and solves, and writes displacements.
+Debian's package is freefem++. Nothing of the plugin is in here: FreeFem++ gets a mesh, materials, loads and supports as text files and a variational form in
+its own language, assembles and solves, and writes displacements.
 """
 import os
 import subprocess

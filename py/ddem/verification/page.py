@@ -4,9 +4,11 @@ import base64
 import datetime
 import os
 import platform
+import re
 
 import numpy as np
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup, escape
 from matplotlib import rc_context
 
 from .. import plots
@@ -39,14 +41,28 @@ def write(results, folder, command="", versions=None):
 
 
 def html(results, pictures, overview, command="", versions=None):
-	"""The page; *pictures* of each case by its name, as (:class:`framework.Picture`, file name, bytes of a PNG file), *overview* the bytes of the picture of all errors."""
+	"""The page; *pictures* of each case by its name, as (:class:`framework.Picture`, file name, bytes of a PNG file), *overview* the bytes of the picture of
+	all errors."""
 	environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-	environment.filters.update(figure=lambda value: _number(value, 6), error=lambda value: _number(value, 2), png=lambda data: base64.b64encode(data).decode())
+	environment.filters.update(
+		figure=lambda value: _number(value, 6), error=lambda value: _number(value, 2), png=lambda data: base64.b64encode(data).decode(), indices=_with_indices
+	)
 	records = [record for result in results for record in result.records]
 	return environment.get_template("verification.html").render(
-		written=datetime.datetime.now().astimezone(), groups=[(group, [r for r in results if r.case.group == group]) for group in GROUPS], results=results,
-		checks=len(records), failed=[record for record in records if not record.passed], wall=sum(result.wall for result in results), pictures=pictures,
-		overview=overview, command=command, versions=dict(versions or {}), processor=processor(), system=platform.platform(), cores=os.cpu_count()
+		written=datetime.datetime.now().astimezone(),
+		groups=[(group, [r for r in results if r.case.group == group]) for group in GROUPS],
+		results=results,
+		tightest={result.case.name: _tightest(result) for result in results if result.records},
+		checks=len(records),
+		failed=[record for record in records if not record.passed],
+		wall=sum(result.wall for result in results),
+		pictures=pictures,
+		overview=overview,
+		command=command,
+		versions=dict(versions or {}),
+		processor=processor(),
+		system=platform.platform(),
+		cores=os.cpu_count()
 	)
 
 
@@ -81,6 +97,16 @@ def _save(picture, path):
 	with open(path, "wb") as file:
 		file.write(data)
 	return data
+
+
+def _with_indices(text):
+	"""σ_xx, c_R: what follows a single letter and an underscore becomes an index; names like time_step stay."""
+	return Markup(re.sub(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω∂])_([A-Za-z0-9α-ω]+)", r"\1<sub>\2</sub>", str(escape(text))))
+
+
+def _tightest(result):
+	"""The check of a result whose error is nearest to its tolerance, or furthest above it."""
+	return max(result.records, key=lambda record: record.error / record.tolerance if record.tolerance > 0 and np.isfinite(record.error) else np.inf)
 
 
 def _number(value, digits):

@@ -90,8 +90,8 @@ def solve(mesh, material, loads, held, rotation="none", **relaxation):
 
 
 def _unbalanced(block, engine, displacement, loads, held):
-	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at which round-off of positions does not show: the
-	treatment is linear."""
+	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at which round-off of positions does not
+	show: the treatment is linear."""
 	members = tools.bodies(block)
 	reference = [body.state.refPos for body in members]
 	corners = displacement[block.mesh.triangles]

@@ -75,11 +75,14 @@ _recorders = []  # PyRunner finds them here by number
 
 
 class Recorder:
-	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the DeformableEngine, so that positions are those of the time."""
+	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the DeformableEngine, so that positions are those of the
+	time."""
 
 	def __init__(self, function, every):
 		self._function, self._rows = function, []
-		self.engine = PyRunner(command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{len(_recorders)}]._take()", iterPeriod=every, initRun=True)
+		self.engine = PyRunner(
+			command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{len(_recorders)}]._take()", iterPeriod=every, initRun=True
+		)
 		_recorders.append(self)
 
 	def _take(self):

@@ -17,15 +17,15 @@ def brazilian(check, size=0.004):
 
 		σ_xx = 2P/πD,   σ_yy = −6P/πD,   σ_xy = 0
 
-	The mesh is unstructured; the forces act on single nodes, so that the stress there grows without bound as the mesh is refined, while that at the centre converges. The
-	lower pole is held.
+	The mesh is unstructured; the forces act on single nodes, so that the stress there grows without bound as the mesh is refined, while that at the centre
+	converges. The lower pole is held.
 
 	Solved by FreeFem++ on the mesh in which every triangle is split at its centroid, and by deformable triangles, relaxed from rest.
 
 	Reference: Hertz (1883); Timoshenko and Goodier, Theory of Elasticity (1970), art. 41. FreeFem++ 4.15 with linear triangles.
 
-	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; the centre is within 2 % of
-	the exact stress.
+	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; the centre
+	is within 2 % of the exact stress.
 	"""
 	material = tools.elastic()
 	mesh = ddem.mesh.polygon(ddem.mesh.disc(0, 0, RADIUS, CORNERS), size=size, seed=1).reordered()

@@ -19,10 +19,8 @@ def beam_frequency(material):
 	inertia, bending = HEIGHT**3 / 12, elasticity.plane_modulus(material) * HEIGHT**3 / 12
 
 	def determinant(omega):
-		rows = np.array([
-			[0, 1, 0, 1 / (KAPPA * material.shear * HEIGHT)], [0, 0, 1 / bending, 0], [0, -material.density * inertia * omega**2, 0, -1],
-			[-material.density * HEIGHT * omega**2, 0, 0, 0]
-		])
+		rows = np.array([[0, 1, 0, 1 / (KAPPA * material.shear * HEIGHT)], [0, 0, 1 / bending, 0], [0, -material.density * inertia * omega**2, 0, -1],
+			[-material.density * HEIGHT * omega**2, 0, 0, 0]])
 		scale = np.array([1, 1 / LENGTH, bending / LENGTH**2, bending / LENGTH**3])  # so that all entries have one size
 		end = expm(LENGTH * rows * scale[None, :] / scale[:, None])
 		return np.linalg.det(end[2:, 2:])
@@ -44,8 +42,8 @@ def cantilever(check, size=0.006):
 
 	Reference: Timoshenko (1921) for both the deflection and the frequency (root of the beam's frequency equation); FreeFem++ 4.15 with linear triangles.
 
-	Expect: agreement with FreeFem++ to the residual. Linear triangles are stiff in bending: with eight of them over the height the deflection is 2.6 % short and
-	the frequency 1.4 % high, both errors falling with the square of the size.
+	Expect: agreement with FreeFem++ to the residual. Linear triangles are stiff in bending: with eight of them over the height the deflection is 2.6 % short
+	and the frequency 1.4 % high, both errors falling with the square of the size.
 	"""
 	material = tools.elastic()
 	mesh = ddem.mesh.rectangle(LENGTH, HEIGHT, size=size, pattern="unstructured", seed=1).reordered()

@@ -22,7 +22,9 @@ def draw_orders(sizes, lines, label):
 		if slope:
 			below = 0.65 * errors[-1] * (sizes / sizes[-1])**slope
 			ax.loglog(1e3 * sizes, below, ":", color="0.4", linewidth=0.8)
-			ax.annotate(f"order {slope:g}", (1e3 * np.sqrt(sizes[0] * sizes[-1]), np.sqrt(below[0] * below[-1])), (4, -8), textcoords="offset points", fontsize=7)
+			ax.annotate(
+				f"order {slope:g}", (1e3 * np.sqrt(sizes[0] * sizes[-1]), np.sqrt(below[0] * below[-1])), (4, -8), textcoords="offset points", fontsize=7
+			)
 	ax.set_xticks(1e3 * sizes, [f"{1e3 * size:g}" for size in sizes])
 	ax.set_xticks([], minor=True)
 	ax.set_xlabel("size of the triangles [mm]")
@@ -31,15 +33,15 @@ def draw_orders(sizes, lines, label):
 	return fig
 
 
-@case(group="statics", seconds=4)
+@case(group="statics", seconds=1)
 def convergence(check, sizes=(0.02, 0.01, 0.005, 0.0025)):
 	"""Order of convergence at rest
 
-	A square whose border is displaced as an exact solution says (complex potentials φ = Sℓ e^{z/ℓ}, ψ = ½ i Sℓ e^{z/ℓ}: all components, smooth, not symmetric), on four
-	unstructured meshes. Errors are means of squares over the area.
+	A square whose border is displaced as an exact solution says (complex potentials φ = Sℓ e^{z/ℓ}, ψ = ½ i Sℓ e^{z/ℓ}: all components, smooth, not
+	symmetric), on four unstructured meshes. Errors are means of squares over the area.
 
-	Reference: for linear triangles the displacement's error falls with the square of the size, that of the stress in proportion to it (Strang and Fix, An Analysis of the Finite
-	Element Method, 1973).
+	Reference: for linear triangles the displacement's error falls with the square of the size, that of the stress in proportion to it (Strang and Fix, An
+	Analysis of the Finite Element Method, 1973).
 
 	Expect: orders 2 and 1 within 0.1.
 	"""
@@ -56,7 +58,10 @@ def convergence(check, sizes=(0.02, 0.01, 0.005, 0.0025)):
 		ddem.relax(1e-6)
 		places = np.vstack([mesh.nodes, mesh.centroids])
 		moved = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - places
-		corners = np.stack([np.column_stack([len(mesh.nodes) + np.arange(len(mesh.triangles)), mesh.triangles[:, k], mesh.triangles[:, (k + 1) % 3]]) for k in range(3)], axis=1)
+		corners = np.stack([
+			np.column_stack([len(mesh.nodes) + np.arange(len(mesh.triangles)), mesh.triangles[:, k], mesh.triangles[:, (k + 1) % 3]]) for k in range(3)
+		],
+			axis=1)
 		points = places[corners].mean(axis=2)  # centroids of the sub-elements
 		weights = np.repeat(mesh.areas / 3, 3).reshape(-1, 3)
 		relative = lambda found, wanted: np.sqrt((weights[..., None] * (found - wanted)**2).sum() / (weights[..., None] * wanted**2).sum())
@@ -73,7 +78,7 @@ def convergence(check, sizes=(0.02, 0.01, 0.005, 0.0025)):
 	check.picture(lambda: draw_orders(sizes, lines, "relative error [-]"), "Errors at rest over the size of the triangles.")
 
 
-@case(group="waves and vibration", seconds=3)
+@case(group="waves and vibration", seconds=1.5)
 def convergence_in_time(check, sizes=(0.02, 0.01, 0.005)):
 	"""Order of convergence of frequencies
 
@@ -83,7 +88,8 @@ def convergence_in_time(check, sizes=(0.02, 0.01, 0.005)):
 
 	Their frequencies are measured on three unstructured meshes, without rotation of cores and with β_φ = 2.
 
-	Reference: separation of variables (Graff, Wave Motion in Elastic Solids, 1975). Linear triangles have errors of second order in the size (Strang and Fix 1973).
+	Reference: separation of variables (Graff, Wave Motion in Elastic Solids, 1975). Linear triangles have errors of second order in the size (Strang and Fix
+	1973).
 
 	Expect: order 2 within 0.1, errors below 2e-3 with 20 triangles along a side.
 	"""
@@ -116,4 +122,7 @@ def convergence_in_time(check, sizes=(0.02, 0.01, 0.005)):
 			check(f"frequency, {kind}, {rotation}, at {1e3 * sizes[-1]:g} mm [rad/s]", found, omega, 4e-3, "Graff (1975), separation of variables")
 			lines.append((f"{kind}, {rotation}", errors, 2 if rotation == "none" and kind == "compression" else None))
 
-	check.picture(lambda: draw_orders(sizes, lines, "relative error of the frequency [-]"), "Errors of the frequencies of a square between rollers over the size of the triangles.")
+	check.picture(
+		lambda: draw_orders(sizes, lines, "relative error of the frequency [-]"),
+		"Errors of the frequencies of a square between rollers over the size of the triangles."
+	)

@@ -12,15 +12,14 @@ EDGE, HALF = 0.01, np.sqrt(0.75)  # edge of the equilateral triangles [m], their
 SHEAR = np.zeros((8, 3))
 SHEAR[[1, 3, 4, 6, 7], [0, 1, 2, 1, 2]] = 1
 
-
 # ---- the lattice, from the linearised equations of the element alone ----
 
 
 def element_matrices(corners, material, beta, share):
 	"""Stiffness (9, 9) per thickness and masses (9,) of a triangle: displacements of its vertices (6), of its core (2), rotation of its core.
 
-	U = Σ_k S_k w(ε_k) + ½ μ β_φ ε_φ² S, Δu_e = u_e − u_i − φ e_z × r_e, ε_φ = (1/3) Σ_e (t_e·Δu_e)/|r_e|; strains of the three sub-elements (centre, k, k+1) from linear
-	interpolation; masses α m/3 in the vertices, (1 − α) m in the core, J_M = m Σ|r_e|² (1/12 − α/3).
+	U = Σ_k S_k w(ε_k) + ½ μ β_φ ε_φ² S, Δu_e = u_e − u_i − φ e_z × r_e, ε_φ = (1/3) Σ_e (t_e·Δu_e)/|r_e|; strains of the three sub-elements (centre, k, k+1)
+	from linear interpolation; masses α m/3 in the vertices, (1 − α) m in the core, J_M = m Σ|r_e|² (1/12 − α/3).
 	"""
 	arms = corners - corners.mean(axis=0)
 	lam, mu = tools.lame(material)
@@ -48,8 +47,9 @@ def element_matrices(corners, material, beta, share):
 def lattice_modes(wavenumber, material, beta, share):
 	"""Angular frequencies [rad/s] and modes of shear waves along x in the infinite lattice of equilateral triangles, by Bloch's theorem.
 
-	A cell has one node and two triangles, 8 degrees of freedom. Rows of nodes are mirrors, so in a shear wave nodes have no u_x, the cores of both kinds move alike, and u_x
-	of cores is a wave of its own, which leaves 3 branches. Modes (3, 8) belong to displacements mode·e^{ikx}, x being the place of the node or core.
+	A cell has one node and two triangles, 8 degrees of freedom. Rows of nodes are mirrors, so in a shear wave nodes have no u_x, the cores of both kinds move
+	alike, and u_x of cores is a wave of its own, which leaves 3 branches. Modes (3, 8) belong to displacements mode·e^{ikx}, x being the place of the node or
+	core.
 	"""
 	first, second = np.array([EDGE, 0]), np.array([0.5, HALF]) * EDGE
 	matrix, masses = np.zeros((8, 8), complex), np.zeros(8)
@@ -122,26 +122,26 @@ def measured_frequencies(wavenumber, branches, beta, share, columns=240):
 	return 2 / O.dt * np.sin(0.5 * O.dt * found), expected[list(branches)]  # without the leapfrog's own, known error
 
 
-@case(group="waves and vibration", seconds=4)
+@case(group="waves and vibration", seconds=3)
 def cosserat_dispersion(check):
 	"""Pseudo-Cosserat: dispersion of shear waves
 
-	Cores are tied to their vertices by β_φ but not to each other. Linearised (Δu_e = u_e − u_i − φ e_z × r_e), the rotation strain of an equilateral triangle is the rotation of
-	the material less that of the core, ε_φ = ½ curl u − φ. For a shear wave u_y(x, t) the energies per volume are ½ρ u̇² + ½ j φ̇² and ½μ u'² + ½μβ_φ (½u' − φ)², with
-	j = J_M/S = ρ (1/12 − α/3) Σ|r_e|². So
+	Cores are tied to their vertices by β_φ but not to each other. Linearised (Δu_e = u_e − u_i − φ e_z × r_e), the rotation strain of an equilateral triangle
+	is the rotation of the material less that of the core, ε_φ = ½ curl u − φ. For a shear wave u_y(x, t) the energies per volume are ½ρ u̇² + ½ j φ̇² and ½μ
+	u'² + ½μβ_φ (½u' − φ)², with j = J_M/S = ρ (1/12 − α/3) Σ|r_e|². So
 
 		ρ ü = μ u'' + ½ μβ_φ ∂_x (½u' − φ),   j φ̈ = μβ_φ (½u' − φ)
 
 		ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²)),   ω_c² = μβ_φ/j
 
-	Two branches: slow waves, in which cores follow the material at rest (c → c_s as k → 0, for any β_φ) and lag behind the faster it swings; and above ω_c cores that swing
-	against it. ω_c is 6√β_φ c_s/a with α = 1/6 and triangles of edge a: a matter of the mesh, so there the lattice shows as well. It is solved exactly by Bloch's theorem,
-	with matrices assembled in the case's own file from the equations of the element.
+	Two branches: slow waves, in which cores follow the material at rest (c → c_s as k → 0, for any β_φ) and lag behind the faster it swings; and above ω_c
+	cores that swing against it. ω_c is 6√β_φ c_s/a with α = 1/6 and triangles of edge a: a matter of the mesh, so there the lattice shows as well. It is
+	solved exactly by Bloch's theorem, with matrices assembled in the case's own file from the equations of the element.
 
 	Reference: Bloch's theorem for the lattice; the continuum above for long waves (derived here; compare Cosserat and Cosserat 1909).
 
-	Expect: the engine's waves are those of the lattice to 1e-4 on both branches, for the paper's β_φ = 2 and for a soft 0.05, whose branches avoid each other near ka = 0.8; the
-	continuum holds within 1 % up to ka = 0.4.
+	Expect: the engine's waves are those of the lattice to 1e-4 on both branches, for the paper's β_φ = 2 and for a soft 0.05, whose branches avoid each other
+	near ka = 0.8; the continuum holds within 1 % up to ka = 0.4.
 	"""
 	sets = {2.0: 1 / 6, 0.05: 0.02}  # β_φ and α, that is the inertia of cores
 	measured, plain = {}, tools.elastic()
@@ -153,16 +153,21 @@ def cosserat_dispersion(check):
 		for branch, name in enumerate(("lower", "upper")):
 			worst = np.argmax(np.abs(found[:, branch] / exact[:, branch] - 1))
 			check(
-				f"{name} branch, β_φ = {beta:g}, frequency at ka = {points[worst]:g}, the worst of {len(points)} [rad/s]", found[worst, branch], exact[worst, branch], 1e-4,
-				"Bloch's theorem for the lattice"
+				f"{name} branch, β_φ = {beta:g}, frequency at ka = {points[worst]:g}, the worst of {len(points)} [rad/s]", found[worst, branch],
+				exact[worst, branch], 1e-4, "Bloch's theorem for the lattice"
 			)
 		for branch, name in enumerate(("lower", "upper")):
 			long = continuum_frequencies(points[:2] / EDGE, plain, beta, share)[branch]
 			worst = np.argmax(np.abs(found[:2, branch] / long - 1))
-			check(f"{name} branch, β_φ = {beta:g}, long waves, frequency at ka = {points[worst]:g} [rad/s]", found[worst, branch], long[worst], 1e-2, "continuum: ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²))")
+			check(
+				f"{name} branch, β_φ = {beta:g}, long waves, frequency at ka = {points[worst]:g} [rad/s]", found[worst, branch], long[worst], 1e-2,
+				"continuum: ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²))"
+			)
 
-	check.note("""The lattice has a dispersion of its own: with five sixths of the mass in the cores short waves run faster than c_s, by 0.15 % at 16 triangles to the wavelength (ka = 0.4
-		gives 0.5 %), where β_φ makes them slower.""")
+	check.note(
+		"""The lattice has a dispersion of its own: with five sixths of the mass in the cores short waves run faster than c_s, by 0.15 % at 16 triangles to
+		the wavelength (ka = 0.4 gives 0.5 %), where β_φ makes them slower."""
+	)
 
 	def draw():
 		fig, panels = tools.axes(plots.PAGE, 72, panels=2)
@@ -186,16 +191,19 @@ def cosserat_dispersion(check):
 		fig.legend(handles, labels, loc="outside upper center", ncols=4)
 		return fig
 
-	check.picture(draw, "Dispersion of shear waves, both branches. Left: β_φ of the paper, cores swing far above the waves. Right: soft ties of heavy cores, branches avoid each other.")
+	check.picture(
+		draw, "Dispersion of shear waves, both branches. Left: β_φ of the paper, cores swing far above the waves. Right: soft ties of heavy cores, branches "
+		"avoid each other."
+	)
 
 
-@case(group="waves and vibration", seconds=1)
+@case(group="waves and vibration", seconds=0.5)
 def cosserat_to_classic(check, size=0.008):
-	"""Pseudo-Cosserat: β_φ → 0 gives the classic continuum
+	"""Pseudo-Cosserat: the classic limit β_φ → 0
 
-	A block is hit by a transverse velocity that varies as a bell along it, on an unstructured mesh, once without rotation of cores and then with ever smaller β_φ. The
-	difference of the displacements half a passage later must vanish with β_φ: cores that swing slower than the waves are felt as additional stiffness in proportion
-	to β_φ (the factor 1 + β_φ/4 of the upper branch). Stiffer ties make cores follow the waves, and only their inertia is felt.
+	A block is hit by a transverse velocity that varies as a bell along it, on an unstructured mesh, once without rotation of cores and then with ever smaller
+	β_φ. The difference of the displacements half a passage later must vanish with β_φ: cores that swing slower than the waves are felt as additional
+	stiffness in proportion to β_φ (the factor 1 + β_φ/4 of the upper branch). Stiffer ties make cores follow the waves, and only their inertia is felt.
 
 	Reference: the same code with rotation “none”, which agrees with FreeFem++ at rest and with the exact speeds of classic waves in other cases.
 

@@ -9,16 +9,18 @@ from yade.ddem.verification import case, tools
 EDGE = 0.01  # [m]
 
 
-@case(group="dynamic relaxation", seconds=0.5)
+@case(group="dynamic relaxation", seconds=0.3)
 def local_damping(check, cycles=3):
 	"""Local damping of one oscillator
 
-	The core of one equilateral triangle, its vertices held, is pushed aside or turned and let go, with Cundall's local damping d. The force against the motion is (1 + d)
-	times the elastic force on the way out and (1 − d) times on the way back, so amplitudes fall by a fixed ratio in every half cycle, whatever its frequency:
+	The core of one equilateral triangle, its vertices held, is pushed aside or turned and let go, with Cundall's local damping d. The force against the
+	motion is (1 + d) times the elastic force on the way out and (1 − d) times on the way back, so amplitudes fall by a fixed ratio in every half cycle,
+	whatever its frequency:
 
 		A₂/A₁ = √((1 − d)/(1 + d)),   t = ½π (1/√(1 − d) + 1/√(1 + d))/ω
 
-	with ω² = 6 (λ + 3μ)/(ρ (1 − α) a²) for the core's shift (edge a, α the share of the mass in the vertices) and ω² = μβ_φ/(ρ a² (1/12 − α/3)) for its rotation.
+	with ω² = 6 (λ + 3μ)/(ρ (1 − α) a²) for the core's shift (edge a, α the share of the mass in the vertices) and ω² = μβ_φ/(ρ a² (1/12 − α/3)) for its
+	rotation.
 
 	Reference: integration of m ẍ = −k x (1 ± d) over a half cycle, derived here; Cundall (1987) for the damping.
 
@@ -52,7 +54,10 @@ def local_damping(check, cycles=3):
 			times, values = recorder.times, recorder.values / recorder.values[0]
 			turning = 1 + np.flatnonzero((values[1:-1] - values[:-2]) * (values[2:] - values[1:-1]) < 0)
 			peaks = np.abs(values[turning])
-			check(f"amplitude after {len(peaks)} half cycles, {motion}, d = {damping:g}, over that at the start [-]", peaks[-1], ((1 - damping) / (1 + damping))**(len(peaks) / 2), 1e-3, "half cycles of m ẍ = −k x (1 ± d)")
+			check(
+				f"amplitude after {len(peaks)} half cycles, {motion}, d = {damping:g}, over that at the start [-]", peaks[-1],
+				((1 - damping) / (1 + damping))**(len(peaks) / 2), 1e-3, "half cycles of m ẍ = −k x (1 ± d)"
+			)
 			check(f"time of a half cycle, {motion}, d = {damping:g} [s]", times[turning[-1]] / len(peaks), half, 1e-3, "half cycles of m ẍ = −k x (1 ± d)")
 			check(f"drift of the energy book, {motion}, d = {damping:g} [-]", energy.largest, 0, 1e-8, "conservation of energy", scale=1)
 			drawn[motion, damping] = times / half, values

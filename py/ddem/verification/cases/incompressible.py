@@ -39,22 +39,23 @@ def deflection(mesh, displacement):
 	return np.trapezoid(displacement[right, 1], mesh.nodes[right, 1]) / SIDE
 
 
-@case(group="statics", seconds=5, needs="FreeFem++")
+@case(group="statics", seconds=6, needs="FreeFem++")
 def incompressible(check, cells=12):
 	"""Nearly incompressible: do the triangles lock?
 
-	A square panel, clamped at the left and sheared at the right, with Poisson's ratio up to 0.4999, on three patterns of mesh. A mesh that locks moves less than a solution that
-	cannot.
+	A square panel, clamped at the left and sheared at the right, with Poisson's ratio up to 0.4999, on three patterns of mesh. A mesh that locks moves less
+	than a solution that cannot.
 
-	At rest and without a load on its core, the core of a triangle sits where the linear interpolation between the vertices has it: all three sub-elements then have one
-	stress, and the split triangle is the plain linear triangle. So it locks as that does: one constraint a triangle, against one node (two unknowns) for every two
-	triangles. Only where four triangles meet along two straight lines one of their four constraints follows from the others and leaves room to move (Nagtegaal, Parks
-	and Rice 1974): at the centres of crossed cells, and at every other node of alternating ones.
+	At rest and without a load on its core, the core of a triangle sits where the linear interpolation between the vertices has it: all three sub-elements
+	then have one stress, and the split triangle is the plain linear triangle. So it locks as that does: one constraint a triangle, against one node (two
+	unknowns) for every two triangles. Only where four triangles meet along two straight lines one of their four constraints follows from the others and
+	leaves room to move (Nagtegaal, Parks and Rice 1974): at the centres of crossed cells, and at every other node of alternating ones.
 
-	Reference: FreeFem++ with Taylor–Hood elements (quadratic displacements, linear pressures), 1800 of them; FreeFem++ with plain linear triangles on the same mesh.
+	Reference: FreeFem++ with Taylor–Hood elements (quadratic displacements, linear pressures), 1800 of them; FreeFem++ with plain linear triangles on the
+	same mesh.
 
-	Expect: the split triangle moves as the plain one to round-off, in all meshes. The regular patterns stay within 5 % of the reference for any Poisson's ratio; an
-	unstructured mesh does up to 0.45 and locks beyond, see the note.
+	Expect: the split triangle moves as the plain one to round-off, in all meshes. The regular patterns stay within 5 % of the reference for any Poisson's
+	ratio; an unstructured mesh does up to 0.45 and locks beyond, see the note.
 	"""
 	reference, ratio_of, unbalanced, split = [], {pattern: [] for pattern in ddem.mesh.generate.PATTERNS}, 0.0, 0.0
 	for poisson in RATIOS:
@@ -77,9 +78,12 @@ def incompressible(check, cells=12):
 	for pattern, ratios in found.items():
 		last = 2 if pattern == "unstructured" else -1
 		check(f"deflection over reference, {pattern}, ν = {RATIOS[last]:g} [-]", ratios[last], 1, 5e-2, "FreeFem++, Taylor–Hood elements")
-	check.note(f"""A limit of the method: on unstructured meshes the panel moves only {100 * found["unstructured"][-2]:.0f} % of what it should at ν = 0.499 and
-		{100 * found["unstructured"][-1]:.0f} % at 0.4999; crossed cells {100 * found["crossed"][-1]:.1f} %, alternating ones {100 * found["alternating"][-1]:.1f} %. Use a regular
-		pattern above ν = 0.45. Concrete has 0.16, and its triangles do not come near the limit unless the equation of state raises the bulk modulus eightfold.""")
+	check.note(
+		f"""A limit of the method: on unstructured meshes the panel moves only {100 * found["unstructured"][-2]:.0f} % of what it should at ν = 0.499 and
+		{100 * found["unstructured"][-1]:.0f} % at 0.4999; crossed cells {100 * found["crossed"][-1]:.1f} %, alternating ones
+		{100 * found["alternating"][-1]:.1f} %. Use a regular pattern above ν = 0.45. Concrete has 0.16, and its triangles do not come near the limit
+		unless the equation of state raises the bulk modulus eightfold."""
+	)
 
 	def draw():
 		fig, (ax,) = tools.axes(height=58)

@@ -26,19 +26,20 @@ def hoop_at_the_hole(points, stress, angles):
 	return np.array([statics.recover(coordinates, hoop, np.array([1.0, angle]), radius=0.4) for angle in angles])
 
 
-@case(group="statics", seconds=4, needs="FreeFem++")
+@case(group="statics", seconds=2, needs="FreeFem++")
 def kirsch(check, fine=0.0004):
 	"""Kirsch: a plate with a hole
 
-	A plate is pulled by S along x. At the border of a hole the stress along it is three times S on the flanks and −S ahead of and behind it. A quarter of the plate, five
-	radii wide, carries the exact tractions on its outer border, so that it is a piece of the infinite plate. The mesh is unstructured and finer towards the hole.
+	A plate is pulled by S along x. At the border of a hole the stress along it is three times S on the flanks and −S ahead of and behind it. A quarter of the
+	plate, five radii wide, carries the exact tractions on its outer border, so that it is a piece of the infinite plate. The mesh is unstructured and finer
+	towards the hole.
 
 	Solved by FreeFem++ on the mesh in which every triangle is split at its centroid, and by deformable triangles, relaxed from rest.
 
 	Reference: Kirsch (1898); Muskhelishov (1953), § 56a. FreeFem++ 4.15 with linear triangles.
 
-	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; the peak stress is within
-	2 % of Kirsch's with triangles of a twenty-fifth of the radius at the hole.
+	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; the peak
+	stress is within 2 % of Kirsch's with triangles of a twenty-fifth of the radius at the hole.
 	"""
 	material = tools.elastic()
 	exact = elasticity.kirsch(material, PULL, RADIUS)
@@ -55,7 +56,9 @@ def kirsch(check, fine=0.0004):
 	hoop = hoop_at_the_hole(mesh.centroids, stress, angles) / PULL
 	check("stress along the hole at its flank over S [-]", hoop[-1], 3, 2e-2, "Kirsch (1898): 3 S")
 	check("stress along the hole ahead of it over S [-]", hoop[0], -1, 3e-2, "Kirsch (1898): −S")
-	check("stress along the hole, largest error over S [-]", np.abs(hoop - 1 + 2 * np.cos(2 * angles)).max(), 0, 5e-2, "Kirsch (1898): S (1 − 2 cos 2θ)", scale=1)
+	check(
+		"stress along the hole, largest error over S [-]", np.abs(hoop - 1 + 2 * np.cos(2 * angles)).max(), 0, 5e-2, "Kirsch (1898): S (1 − 2 cos 2θ)", scale=1
+	)
 	error = stress - exact.stress(mesh.centroids)
 	norm = lambda values: np.sqrt(np.average((values**2).sum(axis=1), weights=mesh.areas))
 	check("stress everywhere, mean square error [-]", norm(error) / norm(exact.stress(mesh.centroids)), 0, 2e-2, "Kirsch (1898)", scale=1)

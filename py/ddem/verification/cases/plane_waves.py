@@ -42,12 +42,13 @@ def measured_speed(recorder, stations):
 	return (stations[-1] - stations[0]) / (last - first)
 
 
-@case(group="waves and vibration", seconds=2)
+@case(group="waves and vibration", seconds=1)
 def plane_waves(check, cell=0.004):
 	"""Plane waves: speed and stress
 
-	One end of a strip is set moving at v = 1 m/s within 30 µs, along the strip or across it, and does not change its shape. The long sides slide on rollers for the plane compression wave, are held along
-	the strip for the plane shear wave, and are free for the wave in a bar. The front runs at c, and behind it the stress is ρ c v:
+	One end of a strip is set moving at v = 1 m/s within 30 µs, along the strip or across it, and does not change its shape. The long sides slide on rollers
+	for the plane compression wave, are held along the strip for the plane shear wave, and are free for the wave in a bar. The front runs at c, and behind it
+	the stress is ρ c v:
 
 		c_p = √((B + 4μ/3)/ρ),   c_s = √(μ/ρ),   c_0 = √(E/((1 − ν²) ρ)),   σ = ρ c v
 
@@ -56,18 +57,18 @@ def plane_waves(check, cell=0.004):
 	Expect: speeds within 0.1 %, stresses within 0.01 % with 25 cells or more in the front; the same with rotating cores, which follow a slow wave.
 	"""
 	stations = np.array([0.06, 0.26])
-	kinds = {"compression": (0, "y", 1), "shear": (1, "x", 1), "bar": (0, "", 2)}
+	kinds = {"compression": ("c_p", 0, "y", 1), "shear": ("c_s", 1, "x", 1), "bar": ("c_0", 0, "", 2)}  # symbol, direction of motion, sides held, cells high
 	drawn = {}
 	for rotation in ("none", "cosserat"):
-		for name, (axis, sides, cells_high) in kinds.items():
+		for name, (symbol, axis, sides, cells_high) in kinds.items():
 			O.reset()
 			material = tools.elastic()
 			p, s = elasticity.speeds(material)
-			c = {"compression": p, "shear": s, "bar": np.sqrt(elasticity.plane_modulus(material) / material.density)}[name]
+			c = {"c_p": p, "c_s": s, "c_0": np.sqrt(elasticity.plane_modulus(material) / material.density)}[symbol]
 			block = strip(material, cell, cells_high, sides=sides)
 			end = 0.3 / c + RAMP
 			recorder = drive(block, axis, stations, end, rotation)
-			check(f"speed of the {name} wave, {rotation} [m/s]", measured_speed(recorder, stations), c, 1e-3, "Graff (1975): " + {"compression": "c_p", "shear": "c_s", "bar": "c_0"}[name])
+			check(f"speed of the {name} wave, {rotation} [m/s]", measured_speed(recorder, stations), c, 1e-3, f"Graff (1975): {symbol}")
 			behind = (block.mesh.centroids[:, 0] > 0.05) & (block.mesh.centroids[:, 0] < 0.15)
 			stress = np.average(block.stress.mean(axis=1)[behind][:, 3 if axis else 0], weights=block.area[behind])
 			check(f"stress behind the front of the {name} wave, {rotation} [Pa]", -stress, material.density * c * SPEED, 1e-4, "momentum: ρ c v")
@@ -89,7 +90,7 @@ def plane_waves(check, cell=0.004):
 	check.picture(draw, "Velocity 0.26 m from the driven end, for the three waves, each in its own time.")
 
 
-@case(group="waves and vibration", seconds=1)
+@case(group="waves and vibration", seconds=0.2)
 def rebar_reflection(check, cell=0.004, ramp=10e-6):
 	"""Reflection at a steel interface
 
@@ -97,7 +98,8 @@ def rebar_reflection(check, cell=0.004, ramp=10e-6):
 
 		σ_r/σ_i = (Z₂ − Z₁)/(Z₂ + Z₁),   σ_t/σ_i = 2 Z₂/(Z₂ + Z₁)
 
-	Reference: continuity of stress and velocity at the interface (Graff, Wave Motion in Elastic Solids, 1975, § 2.1). Moduli of concrete and 304L: Zubelewicz (2018).
+	Reference: continuity of stress and velocity at the interface (Graff, Wave Motion in Elastic Solids, 1975, § 2.1). Moduli of concrete and 304L: Zubelewicz
+	(2018).
 
 	Expect: both within 0.1 %, averaged over the plateaus.
 	"""

@@ -9,18 +9,18 @@ from yade.ddem.verification import case, elasticity, tools
 WAVELENGTH = 0.1  # [m]
 
 
-@case(group="waves and vibration", seconds=3)
-def rayleigh_wave(check, cells=30):
+@case(group="waves and vibration", seconds=2)
+def rayleigh_wave(check, cells=24):
 	"""Rayleigh's surface wave
 
-	A standing surface wave: half a wavelength of the exact displacement field, between rollers (its planes of symmetry), in a block two wavelengths deep with a free top. Let
-	go from rest it swings at ω = c_R k, and its shape stays. c_R is the root of Rayleigh's equation:
+	A standing surface wave: half a wavelength of the exact displacement field, between rollers (its planes of symmetry), in a block two wavelengths deep with
+	a free top. Let go from rest it swings at ω = c_R k, and its shape stays. c_R is the root of Rayleigh's equation:
 
 		(2 − s)² = 4 √(1 − s) √(1 − s c_s²/c_p²),   s = (c_R/c_s)²
 
 	Reference: Rayleigh (1885); c_R/c_s = 0.911, 0.919, 0.927 at ν = 0.2, 0.25, 0.3 (Lamb 1904).
 
-	Expect: the speed within 0.5 % with 30 cells to the wavelength.
+	Expect: the speed within 0.5 % with 24 cells to the wavelength.
 	"""
 	tables = {0.2: 0.911, 0.25: 0.919, 0.3: 0.927}
 	for poisson, table in tables.items():

@@ -8,17 +8,19 @@ from yade.ddem.verification import case, tools
 WIDTH, HEIGHT, GRAVITY = 10.0, 40.0, 9.81  # [m], [m/s²]
 
 
-@case(group="statics", seconds=1)
+@case(group="statics", seconds=0.5)
 def settling(check, size=2.0):
 	"""A column settles under its own weight
 
-	The column stands on rollers, its sides are free. Gravity is switched on at once, damped until nothing moves. Only σ_yy is left, and the top comes down by u:
+	The column stands on rollers, its sides are free. Gravity is switched on at once, damped until nothing moves. Only σ_yy is left, and the top comes down by
+	u:
 
 		σ_yy = −ρ g (H − y),   σ_xx = σ_xy = 0,   u = ρ g H² (1 − ν²)/2E
 
 	Reference: equilibrium of the part above y, and Hooke's law in plane strain (Timoshenko and Goodier, Theory of Elasticity, 1970, art. 96).
 
-	Expect: the weight on the support and the mean stress, which follows from virtual work, to the residual of the relaxation (1e-7); the settlement within 0.5 % on 2 m cells.
+	Expect: the weight on the support and the mean stress, which follows from virtual work, to the residual of the relaxation (1e-7); the settlement within
+	0.5 % on 2 m cells.
 	"""
 	material = tools.elastic(rotationStiffness=0)
 	block = ddem.append(ddem.mesh.rectangle(WIDTH, HEIGHT, size), material)
