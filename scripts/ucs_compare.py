@@ -21,15 +21,13 @@ Expect:   both models peak near 71 MPa at about 0.15 % strain, with a slope of 5
 import argparse
 import math
 import os
-import shlex
-import sys
-import tempfile
 import time
 
-import yade.config
 from yade import ddem
-from yade.ddem import ucs, vtk
-from yade.ddem.report import THOUSANDS, Report
+from yade.ddem import commandline, parameter_tables, ucs, vtk
+from yade.ddem.commandline import count, not_negative, positive, require_writable, seed, share
+from yade.ddem.parameter_tables import number
+from yade.ddem.report import Report
 
 WIDTH, HEIGHT = 0.10, 0.20  # [m]
 DENSITY = 2400  # of the concrete [kg/m³]
@@ -50,8 +48,8 @@ def main():
 	options = read_options()
 	runs = [crush(model, options) for model in options.models]
 	report = Report(
-		runs, options.out, title(runs), settings=settings(options), command=command(), options=plain(options), versions=versions(), notes=notes(options),
-		pictures=options.pictures, pdf=options.pdf
+		runs, options.out, title(runs), settings=settings(options), command=commandline.command(O.numThreads), options=commandline.plain(options),
+		versions=versions(), notes=notes(options), pictures=options.pictures, pdf=options.pdf
 	)
 	page = report.write()
 	print(f"\n{report.table()}\n\nReport: {page}")
@@ -77,7 +75,8 @@ def rigid_test(options):
 	return platens, critical, [
 		("spheres", number(len(sample)), f"radii {smallest:g} to {largest:g} mm, {100 * packing.solid_fraction:.1f} % of the block's volume"),
 		("bonds", number(sample.initial_bonds), f"{2 * sample.initial_bonds / len(sample):.1f} a sphere"),
-		*material_rows(O.materials["bonds"], BONDED_ROWS),
+		*parameter_tables.rows(O.materials["bonds"], parameter_tables.BONDED),
+		("ρ", f"{O.materials['bonds'].density:.4g} kg/m³", "density of the spheres: the block as a whole has that of the concrete"),
 	]
 
 
@@ -97,7 +96,7 @@ def deformable_test(options):
 	return platens, critical, [
 		("triangles", number(len(mesh.triangles)), quality),
 		("rotation", options.rotation, "treatment of the particles' rotation"),
-		*material_rows(O.materials["concrete"], CONCRETE_ROWS),
+		*parameter_tables.rows(O.materials["concrete"], parameter_tables.CONCRETE),
 		("spread of G_f", "0.8 G_f", "standard deviation of the triangles' fracture energies, drawn from a normal distribution, not below 0.2 G_f"),
 	]
 
@@ -144,7 +143,7 @@ def read_options():
 	run = parser.add_argument_group("run")
 	run.add_argument("--preset", choices=PRESETS, default="quick", help="sizes and speed: quick takes about a minute on two cores, full about ten")
 	run.add_argument("--models", type=models, default="rigid,deformable", metavar="LIST", help="which models to crush, in this order: rigid, deformable or both")
-	run.add_argument("--seed", type=int, default=1, help="draws the packing, the irregular mesh and the fracture energies")
+	run.add_argument("--seed", type=seed, default=1, help="draws the packing, the irregular mesh and the fracture energies")
 	run.add_argument("--out", default=os.path.join("out", "ucs_compare"), metavar="DIR", help="folder for all files, made when missing; older files are replaced")
 	test = parser.add_argument_group("test")
 	test.add_argument("--velocity", type=positive, default=1.0, metavar="M/S", help="speed of each platen [m/s]; Zubelewicz's 4.3 has 10 m/s at the top only")
@@ -164,7 +163,7 @@ def read_options():
 	sample.add_argument("--bonds", type=positive, nargs=2, default=preset["bonds"], metavar=("E", "C"), help="Young's modulus and cohesion of the bonds [Pa], "
 		"matched to the triangles for the other defaults")
 	sample.add_argument("--depth", type=positive, default=0.02, metavar="M", help="thickness of the block out of plane [m], at least twice the largest diameter")
-	sample.add_argument("--fails", type=int, default=1000, metavar="N", help="the packing of spheres is finished when so many in a row found no place")
+	sample.add_argument("--fails", type=count, default=1000, metavar="N", help="the packing of spheres is finished when so many in a row found no place")
 	output = parser.add_argument_group("output")
 	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
 	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
@@ -175,41 +174,12 @@ def read_options():
 	smallest, largest = options.radii
 	if smallest > largest:
 		parser.error(f"argument --radii: the smallest radius, {smallest:g} m, is above the largest, {largest:g} m")
-	if options.fails < 1:
-		parser.error(f"argument --fails: {options.fails} must be at least 1")
-	if options.seed < 0:
-		parser.error(f"argument --seed: {options.seed} must not be negative")
 	if options.depth < 4 * largest:
 		parser.error(f"argument --depth: {options.depth:g} m is less than two diameters of the largest sphere, {4 * largest:g} m; use smaller --radii or more depth")
 	if options.size > WIDTH / 4:
 		parser.error(f"argument --size: {options.size:g} m is more than a quarter of the block's width of {WIDTH:g} m")
-	try:
-		os.makedirs(options.out, exist_ok=True)
-		tempfile.TemporaryFile(dir=options.out).close()
-	except OSError as error:
-		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	require_writable(parser, "--out", options.out)
 	return options
-
-
-def positive(text):
-	value = float(text)
-	if not (value > 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must be positive")
-	return value
-
-
-def not_negative(text):
-	value = float(text)
-	if not (value >= 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must not be negative")
-	return value
-
-
-def share(text):
-	value = float(text)
-	if not 0 <= value < 1:
-		raise argparse.ArgumentTypeError(f"{text} must be a part, from 0 to below 1")
-	return value
 
 
 def models(text):
@@ -220,28 +190,6 @@ def models(text):
 
 
 # ---- what the report says about the test ----
-
-CONCRETE_ROWS = (
-	("bulk", "B", "GPa", 1e9, "bulk modulus"), ("shear", "μ", "GPa", 1e9, "shear modulus"), ("density", "ρ", "kg/m³", 1, "density"),
-	("strength", "σ_p0", "MPa", 1e6, "strength in the flow rule"), ("fractureEnergy", "G_f", "kJ/m³", 1e3, "mean fracture energy"),
-	("rotationStiffness", "β_φ", "", 1, "stiffness against rotation")
-)
-BONDED_ROWS = (
-	("young", "E", "GPa", 1e9, "Young's modulus of the bonds"), ("poisson", "ν", "", 1, "Poisson's ratio of the bonds"),
-	("cohesion", "C", "MPa", 1e6, "shear strength of the bonds without normal stress"),
-	("bondFrictionAngle", "φ", "°", math.radians(1), "friction angle of the bonds"),
-	("frictionStatic", "μ_s", "", 1, "friction of contacts until the first slip"), ("frictionDynamic", "μ_d", "", 1, "friction of contacts after it"),
-	("density", "ρ", "kg/m³", 1, "density of the spheres: the block as a whole has that of the concrete")
-)
-
-
-def number(count):
-	return f"{count:,d}".replace(",", THOUSANDS)
-
-
-def material_rows(material, rows):
-	return [(symbol, f"{getattr(material, name) / factor:.4g} {unit}".strip(), meaning) for name, symbol, unit, factor, meaning in rows]
-
 
 def title(runs):
 	return "Uniaxial compression of concrete: " + " against ".join(run.title for run in runs)
@@ -274,24 +222,11 @@ def notes(options):
 	]
 
 
-def command():
-	threads = ["--threads", str(O.numThreads)] if O.numThreads > 1 else []
-	script = os.path.relpath(sys.argv[0])
-	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", *threads, script, *sys.argv[1:]])
-
-
-def plain(options):
-	return {name: list(value) if isinstance(value, tuple) else value for name, value in vars(options).items()}
-
-
 def versions():
 	import matplotlib
 	import numpy
 	from vtkmodules.vtkCommonCore import vtkVersion
-	return {
-		"YADE": yade.config.version, "Python": sys.version.split()[0], "NumPy": numpy.__version__, "VTK": vtkVersion.GetVTKVersion(),
-		"Matplotlib": matplotlib.__version__
-	}
+	return {**commandline.versions(numpy, matplotlib), "VTK": vtkVersion.GetVTKVersion()}
 
 
 if __name__ == "__main__":

@@ -127,14 +127,14 @@ class Report:
 
 	def write(self):
 		"""Write all files and return the path of report.html."""
+		summary = json.dumps(self.summary(), indent=2, allow_nan=False)
 		os.makedirs(self.folder, exist_ok=True)
 		for run in self.runs:
 			run.series.write(self._path(f"{run.model}.csv"))
 			if run.broken is not None:
 				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
 		with open(self._path("summary.json"), "w") as file:
-			json.dump(self.summary(), file, indent=2, allow_nan=False)
-			file.write("\n")
+			file.write(summary + "\n")
 		pictures = self._write_pictures() if self.pictures else {}
 		page = self.html(pictures)
 		with open(self._path("report.html"), "w", encoding="utf-8") as file:

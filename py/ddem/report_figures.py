@@ -34,7 +34,7 @@ def stress_strain(runs):
 		ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
 		tension = runs[0].test == "tension"
 		ax.plot([], [], "o", color="0.4", markersize=3.5, label="peak (tensile strength)" if tension else "peak (UCS)")
-		_label(ax, "axial strain [%]", "axial stress, tension positive [MPa]" if tension else "axial stress [MPa]")
+		_label(ax, "axial strain [%]", "tensile stress [MPa]" if tension else "axial stress [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))
 		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
@@ -87,7 +87,8 @@ def broken_bonds(runs):
 		_label(ax, "time [ms]", "broken bonds [-]")
 		ax.set_xlim(0, 1e3 * time[-1])
 		ax.set_ylim(bottom=0)
-		share = ax.secondary_yaxis("right", functions=(lambda count: 100 * count / run.extra["bonds"], lambda part: part * run.extra["bonds"] / 100))
+		bonds = run.extra["bonds"]
+		share = ax.secondary_yaxis("right", functions=(lambda count: 100 * count / bonds, lambda part: part * bonds / 100))
 		share.set_ylabel("share of all bonds [%]")
 		share.spines["right"].set_linewidth(0.6)
 		fig.legend(loc="outside upper center", ncols=4, columnspacing=1.5)
@@ -159,8 +160,8 @@ def engines(runs):
 
 #: pictures of the report, in order
 ALL = {
-	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces, "evolution": evolution, "final_damage": final_damage,
-	"rotation": rotation, "energy": energy, "engines": engines
+	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces, "evolution": evolution,
+	"final_damage": final_damage, "rotation": rotation, "energy": energy, "engines": engines
 }
 
 
