@@ -55,7 +55,7 @@ def cantilever(check, size=0.006):
 
 	loads = statics.nodal_loads(mesh, lambda x, y: x > LENGTH - 1e-9, traction)
 	solution = statics.solve(mesh, material, loads, held, residual=1e-5, damping=0.5)
-	check("force out of balance in FreeFem++'s solution [-]", solution.unbalanced, 0, 1e-8, "FreeFem++ on the split mesh", scale=1)
+	check("force out of balance in FreeFem++'s solution [-]", solution.unbalanced, 0, 1e-10, "FreeFem++ on the split mesh", scale=1)
 	check("difference of displacements to FreeFem++ [-]", solution.difference, 0, 1e-3, "FreeFem++ on the split mesh", scale=1)
 
 	tip = np.flatnonzero(mesh.nodes[:, 0] > LENGTH - 1e-9)

@@ -241,7 +241,7 @@ def cosserat_to_classic(check, size=0.008):
 		ax.loglog(betas[-3:], 1.6 * differences[-1] * betas[-3:] / betas[-1], "k-", linewidth=0.7)
 		ax.annotate("1 : 1", (betas[-2], 1.6 * differences[-1] * betas[-2] / betas[-1]), (-4, 4), textcoords="offset points", ha="right")
 		ax.set_xlabel(r"$\beta_\varphi$ [-]")
-		ax.set_ylabel("difference to the classic continuum [-]")
+		ax.set_ylabel("difference to classic [-]")
 		return fig
 
 	check.picture(draw, "Difference of all displacements to those of a classic continuum, over the rotation stiffness.")

@@ -73,8 +73,8 @@ def incompressible(check, cells=12):
 			split = max(split, np.abs(solution.freefem[:len(plain)] - plain).max() / np.abs(plain).max())
 			ratios.append(deflection(mesh, plain) / reference[-1])
 	found = {pattern: np.array(ratios) for pattern, ratios in ratio_of.items()}
-	check("force out of balance in FreeFem++'s solutions, all meshes and ratios [-]", unbalanced, 0, 1e-7, "FreeFem++ on the split mesh", scale=1)
-	check("difference of split and plain triangles, all meshes and ratios [-]", split, 0, 1e-7, "FreeFem++ on the mesh itself", scale=1)
+	check("force out of balance in FreeFem++'s solutions, all meshes and ratios [-]", unbalanced, 0, 1e-8, "FreeFem++ on the split mesh", scale=1)
+	check("difference of split and plain triangles, all meshes and ratios [-]", split, 0, 1e-8, "FreeFem++ on the mesh itself", scale=1)
 	for pattern, ratios in found.items():
 		last = 2 if pattern == "unstructured" else -1
 		check(f"deflection over reference, {pattern}, ν = {RATIOS[last]:g} [-]", ratios[last], 1, 5e-2, "FreeFem++, Taylor–Hood elements")

@@ -143,7 +143,7 @@ def rigid_motion(check):
 		for treatment, marker in zip(tools.TREATMENTS, "s^o"):
 			ax.semilogy(angles / (2 * np.pi), np.maximum(found[treatment], 1e-17), marker=marker, markersize=3, linestyle="-", label=treatment)
 		ax.set_xlabel("turns [-]")
-		ax.set_ylabel("largest stress over bulk modulus [-]")
+		ax.set_ylabel("stress over bulk modulus [-]")
 		tools.legend(ax)
 		return fig
 
