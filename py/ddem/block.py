@@ -7,8 +7,10 @@ import numpy as np
 
 from yade import Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
+from . import crackband
 
-def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0)):
+
+def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
 	"""Append the mesh to the scene as nodes and deformable triangles.
 
 	:param mesh: a :class:`mesh.Mesh`; it is checked and renumbered for memory locality first (see :attr:`Block.mesh`).
@@ -17,16 +19,18 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 		*spread* G_f, not below *floor* G_f (Zubelewicz 2018, section 4.3). None: all have the material's G_f.
 	:param thickness: of the plane-strain slice [m].
 	:param position: offset added to the mesh's coordinates [m].
+	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; others get as much more or less as makes the energy of a crack per area
+		the same (see :mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
 	:returns: :class:`Block`
-	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another kind, thickness, seed, spread, floor or position out
-		of range. Nothing is appended then.
+	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another kind, thickness, seed, spread, floor, position or
+		crack_band out of range. Nothing is appended then.
 	"""
 	mesh.validate()
 	mesh = mesh.reordered()
 	by_region = _materials_by_region(mesh, materials)
 	if not 0 < thickness < math.inf:
 		raise ValueError(f"thickness = {thickness} m must be positive and finite")
-	energies = _fracture_energies(mesh, by_region, seed, spread, floor)
+	energies = _fracture_energies(mesh, by_region, seed, spread, floor, crack_band)
 	offset = np.asarray(position, float)
 	if offset.shape != (3, ) or not np.isfinite(offset).all():
 		raise ValueError(f"position = {position} must be three finite numbers [m]")
@@ -233,16 +237,19 @@ def _materials_by_region(mesh, materials):
 	return found
 
 
-def _fracture_energies(mesh, by_region, seed, spread, floor):
+def _fracture_energies(mesh, by_region, seed, spread, floor, crack_band):
+	factors = np.ones(len(mesh.triangles))
+	if crack_band is not None:
+		factors *= crackband.factors(mesh.areas, crack_band)
+	if seed is not None:
+		if not isinstance(seed, numbers.Integral) or seed < 0:
+			raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more (or None: every triangle has its material's fracture energy)")
+		if not 0 <= spread < math.inf or not 0 < floor <= 1:
+			raise ValueError(f"spread = {spread} must be finite and not negative and floor = {floor} must lie in (0, 1], both as shares of the mean fracture energy")
+		factors *= np.maximum(np.random.default_rng(seed).normal(1.0, spread, len(factors)), floor)
 	energies = np.full(len(mesh.triangles), -1.0)  # the material's own
-	if seed is None:
+	if seed is None and crack_band is None:
 		return energies.tolist()
-	if not isinstance(seed, numbers.Integral) or seed < 0:
-		raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more (or None: every triangle has its material's fracture energy)")
-	if not 0 <= spread < math.inf or not 0 < floor <= 1:
-		raise ValueError(f"spread = {spread} must be finite and not negative and floor = {floor} must lie in (0, 1], both as shares of the mean fracture energy")
-	random = np.random.default_rng(seed)
-	factors = np.maximum(random.normal(1.0, spread, len(energies)), floor)
 	for index, material in enumerate(by_region):
 		if isinstance(material, ConcreteDamageMat):
 			where = mesh.regions == index
