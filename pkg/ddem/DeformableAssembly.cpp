@@ -330,14 +330,28 @@ namespace {
 		if (s.spin.size()) b.state->angVel[2] = s.spin.velocity[i];
 	}
 
-	bool importPoint(const Body& b, ddem::Points& points, std::size_t i)
+	/// Bodies that live kinematic engines drive. Those engines wipe the velocity of their bodies in every step, in free directions, too, before they set it.
+	std::vector<char> drivenBodies(const Scene& scene)
+	{
+		std::vector<char> driven(scene.bodies->size(), 0);
+		for (const auto& e : scene.engines)
+			if (const auto* drive = dynamic_cast<const KinematicEngine*>(e.get()); drive && !drive->dead)
+				for (const auto id : drive->ids)
+					if (id >= 0 && std::size_t(id) < driven.size()) driven[std::size_t(id)] = 1;
+		return driven;
+	}
+
+	/// \param driven whether velocities in free directions are to be left alone
+	bool importPoint(const Body& b, ddem::Points& points, std::size_t i, bool driven)
 	{
 		const State& s       = *b.state;
 		bool         changed = false;
 		for (std::size_t c = 0; c < 2; c++) {
 			const auto axis = Eigen::Index(c);
-			changed |= s.pos[axis] != points.position[2 * i + c] || s.vel[axis] != points.velocity[2 * i + c];
+			changed |= s.pos[axis] != points.position[2 * i + c];
 			points.position[2 * i + c] = s.pos[axis];
+			if (driven && points.inverseMass[2 * i + c] > 0) continue;
+			changed |= s.vel[axis] != points.velocity[2 * i + c];
 			points.velocity[2 * i + c] = s.vel[axis];
 		}
 		if (changed) requireFinite(b);
@@ -372,6 +386,7 @@ void DeformableAssembly::exposeConstrained() const
 void DeformableAssembly::importChanges(const Scene& scene)
 {
 	bool       blockedChanged = false;
+	const auto driven         = drivenBodies(scene);
 	const auto take           = [&](const shared_ptr<Body>& b, Body::id_t id, ddem::Points& points, unsigned& blocked, std::size_t i) {
                 if (b->getId() != id || !scene.bodies->exists(id)) {
                         std::ostringstream text;
@@ -379,7 +394,7 @@ void DeformableAssembly::importChanges(const Scene& scene)
                              << ") m was erased: deformable nodes and triangles cannot be erased during a simulation; hold them, or build the scene without them";
                         throw std::invalid_argument(text.str());
                 }
-                importPoint(*b, points, i);
+                importPoint(*b, points, i, driven[std::size_t(id)]);
                 blockedChanged |= b->state->blockedDOFs != blocked;
                 blocked = b->state->blockedDOFs;
 	};

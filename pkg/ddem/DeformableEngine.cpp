@@ -24,7 +24,7 @@ namespace {
 	/// Engines that neither look at deformable bodies nor add forces to them.
 	bool isQuiet(const Engine& engine)
 	{
-		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "GlobalStiffnessTimeStepper", "DeformableEngine" };
+		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableEngine" };
 		return names.count(engine.getClassName()) > 0;
 	}
 
@@ -176,7 +176,7 @@ void DeformableEngine::checkEngines()
 		const std::string name = now[i]->getClassName();
 		if (now[i] == this) mine = long(i);
 		if (name == "ForceResetter") resetter = long(i);
-		if (name == "InteractionLoop") interactions = long(i);
+		if (dynamic_cast<const InteractionLoop*>(now[i])) interactions = long(i);
 	}
 	if (resetter < 0) throw std::runtime_error("O.engines has no ForceResetter: forces and energies would pile up from step to step; put ForceResetter() first");
 	if (resetter > mine)

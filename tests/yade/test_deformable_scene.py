@@ -9,7 +9,7 @@ import time
 import numpy as np
 import pytest
 
-from yade import ConcreteDamageMat, ForceEngine, ForceResetter, NewtonIntegrator, O, PyRunner, RadialForceEngine, Vector3, ddem
+from yade import ConcreteDamageMat, DeformableEngine, ForceEngine, ForceResetter, NewtonIntegrator, O, PyRunner, RadialForceEngine, Vector3, ddem
 from yade.utils import sphere
 
 from deformable_samples import (
@@ -193,6 +193,24 @@ def test_velocities_set_by_python_are_taken_up(when):
 	O.run(10, True)
 	mass = engine.array("nodeMass").sum() + engine.array("coreMass").sum()
 	assert momentum(engine) == pytest.approx(mass * np.array([2, -1]), rel=1e-12)
+
+
+@pytest.mark.parametrize("treatment", ["none", "corotational", "cosserat"])
+def test_driven_nodes_that_are_free_to_slide_do_not_feel_who_looks(treatment):
+	"""Kinematic engines wipe the whole velocity of their nodes, of which only the driven direction is theirs."""
+	ends = []
+	for period in (None, 1, 4):
+		O.reset()
+		O.materials.append(ConcreteDamageMat(label="concrete", density=2400))
+		block = ddem.append(ddem.mesh.rectangle(width=0.04, height=0.08, size=0.01), "concrete")
+		platens = ddem.platens(block, velocity=1.0, ramp=1e-5, lateral="free")
+		O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=treatment)] + ([PyRunner(command="1", iterPeriod=period)] if period else [])
+		O.dt = ddem.time_step(0.8)
+		O.run(200, True)
+		ends.append(block.positions.tolist())
+	assert ends[1] == ends[0] and ends[2] == ends[0]
+	top = block.positions[block.mesh.boundary("top")]
+	assert np.ptp(top[:, 0]) > 0.04 * (1 + 1e-5)  # it has slid apart
 
 
 def test_nodes_are_held_and_released_between_runs():
