@@ -19,17 +19,16 @@ what stopped it), 2 wrong options, 130 interrupted.
 Expect:   EXPECT
 """
 import argparse
-import math
 import os
-import shlex
 import signal
 import sys
+from argparse import SUPPRESS
 
-import yade.config
-from yade.ddem import virtualtest
+from yade.ddem import commandline, virtualtest
 from yade.ddem.calibration import Calibration, Target
 from yade.ddem.calibration_quantities import MEASURES, TUNABLES, parameters, starts, usual
 from yade.ddem.calibration_report import CalibrationReport, Progress, material_line
+from yade.ddem.commandline import count, not_negative, positive, require_writable, seed, share
 from yade.ddem.evaluations import Bench
 
 #: attributes of the material that are stated, with the values of its class where nothing else is said
@@ -46,20 +45,20 @@ def main():
 	options, parser = read_options()
 	try:
 		setup, targets, tuned, fixed, evaluate = prepare(options)
-		bench = Bench(
-			evaluate, virtualtest.cases([t.name for t in targets], options.seeds), evaluate.settings(), os.path.join(options.out, "evaluations.jsonl"),
-			options.jobs, options.budget
-		)
+		require_writable(parser, "--out", options.out)
+		tests = virtualtest.cases([t.name for t in targets], options.seeds)
+		bench = Bench(evaluate, tests, evaluate.settings(), os.path.join(options.out, "evaluations.jsonl"), options.jobs, options.budget)
+		progress = Progress(options.model, tuned, targets, lambda line: print(line, flush=True))
+		calibration = Calibration(tuned, targets, bench, options.step, options.sensitivities, progress)
 	except (ValueError, OSError, RuntimeError) as error:
 		parser.error(str(error))
 	with bench:
 		for number, reason in bench.store.unreadable:
 			print(f"{bench.store.path}, line {number} is not readable ({reason}); its evaluation is made again")
 		print(introduction(options, bench))
-		progress = Progress(options.model, tuned, targets, options.step, lambda line: print(line, flush=True))
 		progress.header()
 		try:
-			outcome = Calibration(tuned, targets, bench, options.step, options.sensitivities, progress).run()
+			outcome = calibration.run()
 		except KeyboardInterrupt:
 			print(f"\nInterrupted after {bench.ran} evaluations; the same command goes on from there.")
 			sys.exit(INTERRUPTED)
@@ -87,6 +86,9 @@ def prepare(options):
 		if len(value) > 2:
 			raise ValueError(f"--{name} takes a value and, if it has one of its own, a tolerance; got {' '.join(f'{v:g}' for v in value)}")
 		targets.append(Target(name, value[0], value[1] if len(value) == 2 else options.tolerance))
+
+	if not options.step > 0:
+		raise ValueError("--step 0: finite differences need a step, above the noise of breaking bonds (0.08)")
 
 	names = options.tune or usual(options.model, wanted)
 	given = dict(options.set)
@@ -128,51 +130,51 @@ def read_options():
 	aim = parser.add_argument_group("targets (any of them)")
 	for name, what in (("young", "Young's modulus"), ("ucs", "strength in compression"), ("tensile", "strength in tension, positive")):
 		aim.add_argument(
-			f"--{name}", type=positive, nargs="+", default=argparse.SUPPRESS, metavar=("PA", "TOLERANCE"),
+			f"--{name}", type=positive, nargs="+", default=SUPPRESS, metavar=("PA", "TOLERANCE"),
 			help=f"{what} [Pa], and a relative tolerance of its own"
 		)
 	aim.add_argument("--tolerance", type=share, default=0.02, metavar="PART", help="relative tolerance of targets without one of their own")
 	model = parser.add_argument_group("model")
 	model.add_argument("--model", choices=tuple(TUNABLES), default="rigid", help="bonded spheres or deformable triangles of concrete")
 	model.add_argument(
-		"--tune", nargs="+", default=argparse.SUPPRESS, metavar="NAME",
+		"--tune", nargs="+", default=SUPPRESS, metavar="NAME",
 		help="attributes of the material to tune. rigid: " + ", ".join(TUNABLES["rigid"]) + "; deformable: " + ", ".join(TUNABLES["deformable"]) +
 		" (default: young for --young; cohesion or strength for --ucs; bondFrictionAngle or friction for --tensile beside it)"
 	)
 	model.add_argument(
-		"--set", type=assignment, nargs="+", default=argparse.SUPPRESS, metavar="NAME=VALUE", help="any other attributes of the material, kept as given"
+		"--set", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE", help="any other attributes of the material, kept as given"
 	)
 	model.add_argument(
-		"--start", type=assignment, nargs="+", default=argparse.SUPPRESS, metavar="NAME=VALUE", help="where to begin, instead of by scaling laws"
+		"--start", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE", help="where to begin, instead of by scaling laws"
 	)
 	model.add_argument(
-		"--bounds", type=interval, nargs="+", default=argparse.SUPPRESS, metavar="NAME=LOW:HIGH",
+		"--bounds", type=interval, nargs="+", default=SUPPRESS, metavar="NAME=LOW:HIGH",
 		help="how far a tuned attribute may go; by default a twentieth and twenty times the start, for angles and pure numbers their sensible range"
 	)
 	model.add_argument("--convention", choices=("consistent", "esys"), default="consistent", help="of rigid bonds: conservative, or ESyS-Particle's own")
 	sample = parser.add_argument_group("specimen (default: that of --specimen)")
 	sample.add_argument(
-		"--specimen", choices=tuple(virtualtest.SPECIMENS), default=argparse.SUPPRESS,
+		"--specimen", choices=tuple(virtualtest.SPECIMENS), default=SUPPRESS,
 		help="prism: 10 x 20 x 10 mm, smooth ends, of spheres; block: 100 x 200 x 20 mm in plane strain, rough ends, that of ucs_compare.py (default: prism for "
 		"rigid, block for deformable)"
 	)
 	sample.add_argument(
-		"--radii", type=positive, nargs=2, default=argparse.SUPPRESS, metavar=("MIN", "MAX"),
+		"--radii", type=positive, nargs=2, default=SUPPRESS, metavar=("MIN", "MAX"),
 		help="range of the spheres' radii [m] (prism: 0.0004 0.002, block: 0.002 0.005)"
 	)
 	sample.add_argument("--fails", type=count, default=1000, metavar="N", help="the packing of spheres is finished when so many in a row found no place")
-	sample.add_argument("--size", type=positive, default=argparse.SUPPRESS, metavar="M", help="size of the triangles' mesh [m] (block: 0.005)")
+	sample.add_argument("--size", type=positive, default=SUPPRESS, metavar="M", help="size of the triangles' mesh [m] (block: 0.005)")
 	sample.add_argument("--density", type=positive, default=2400.0, metavar="KG/M3", help="of the specimen as a whole")
 	sample.add_argument(
 		"--seeds", type=seed, nargs="+", default=[1], metavar="N", help="draw packing, mesh and fracture energies; measures are means over several seeds"
 	)
 	test = parser.add_argument_group("tests")
 	test.add_argument(
-		"--velocity", type=positive, default=argparse.SUPPRESS, metavar="M/S", help="speed of each platen in compression (prism: 0.125, block: 1)"
+		"--velocity", type=positive, default=SUPPRESS, metavar="M/S", help="speed of each platen in compression (prism: 0.125, block: 1)"
 	)
-	test.add_argument("--tension-velocity", type=positive, default=argparse.SUPPRESS, metavar="M/S", help="the same in tension (default: a quarter of it)")
+	test.add_argument("--tension-velocity", type=positive, default=SUPPRESS, metavar="M/S", help="the same in tension (default: a quarter of it)")
 	test.add_argument(
-		"--ramp", type=not_negative, default=argparse.SUPPRESS, metavar="S", help="time over which the platens reach their speed [s] (prism: 2e-5, block: 1e-4)"
+		"--ramp", type=not_negative, default=SUPPRESS, metavar="S", help="time over which the platens reach their speed [s] (prism: 2e-5, block: 1e-4)"
 	)
 	test.add_argument(
 		"--strain", type=positive, default=0.01, metavar="E",
@@ -202,41 +204,6 @@ def read_options():
 	return options, parser
 
 
-def positive(text):
-	value = float(text)
-	if not (value > 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must be positive")
-	return value
-
-
-def not_negative(text):
-	value = float(text)
-	if not (value >= 0 and math.isfinite(value)):
-		raise argparse.ArgumentTypeError(f"{text} must not be negative")
-	return value
-
-
-def share(text):
-	value = float(text)
-	if not 0 < value < 1:
-		raise argparse.ArgumentTypeError(f"{text} must be a part, between 0 and 1")
-	return value
-
-
-def count(text):
-	value = int(text)
-	if value < 1:
-		raise argparse.ArgumentTypeError(f"{text} must be a whole number, 1 or more")
-	return value
-
-
-def seed(text):
-	value = int(text)
-	if value < 0:
-		raise argparse.ArgumentTypeError(f"{text} must not be negative")
-	return value
-
-
 def assignment(text):
 	name, equals, value = text.partition("=")
 	try:
@@ -257,13 +224,13 @@ def interval(text):
 # ---- what is said about it ----
 
 
-def tests(bench):
+def kinds(bench):
 	return " and ".join(dict.fromkeys(case["test"] for case in bench.cases))
 
 
 def introduction(options, bench):
 	seeds = f", mean of {len(options.seeds)} seeds" if len(options.seeds) > 1 else ""
-	return f"Calibration of the {options.model} model on a {options.specimen}: {tests(bench)}{seeds}; {bench.jobs} at the same time.\n"
+	return f"Calibration of the {options.model} model on a {options.specimen}: {kinds(bench)}{seeds}; {bench.jobs} at the same time.\n"
 
 
 def write_report(options, setup, fixed, outcome, bench):
@@ -271,9 +238,9 @@ def write_report(options, setup, fixed, outcome, bench):
 	order = [name for name in (*TUNABLES[options.model], *values) if name in values]
 	material = material_line(options.model, {name: values[name] for name in dict.fromkeys(order)}, setup.density) if outcome.best else ""
 	particles = "bonded spheres" if options.model == "rigid" else "deformable triangles of concrete"
-	title = f"Calibration of {particles}: a {options.specimen} in {tests(bench)}"
+	title = f"Calibration of {particles}: a {options.specimen} in {kinds(bench)}"
 	report = CalibrationReport(
-		outcome, bench, options.model, options.out, title, material, rows(options, setup, fixed), command(), {**vars(options)}, versions(), notes(setup),
+		outcome, bench, options.model, options.out, title, material, rows(options, setup, fixed), commandline.command(), commandline.plain(options), versions(), notes(setup),
 		options.pictures, options.pdf
 	)
 	page = report.write()
@@ -316,19 +283,11 @@ def notes(setup):
 	return said
 
 
-def command():
-	script = os.path.relpath(sys.argv[0])
-	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", script, *sys.argv[1:]])
-
-
 def versions():
 	import matplotlib
 	import numpy
 	import scipy
-	return {
-		"YADE": yade.config.version, "Python": sys.version.split()[0], "NumPy": numpy.__version__, "SciPy": scipy.__version__,
-		"Matplotlib": matplotlib.__version__
-	}
+	return commandline.versions(numpy, scipy, matplotlib)
 
 
 if __name__ == "__main__":

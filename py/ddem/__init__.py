@@ -14,7 +14,8 @@ Append a mesh of deformable triangles and load it::
 	print(platens.stress, block.damage.mean())
 
 SI units; tension positive. Sub-modules: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete law), :mod:`bonded` and :mod:`packing` (rigid bonded
-spheres), :mod:`plots`, :mod:`report`. Only :mod:`mesh`, :mod:`materialpoint` and :mod:`packing` work outside YADE.
+spheres), :mod:`calibration` and :mod:`virtualtest`, :mod:`plots`, :mod:`report`. Only :mod:`mesh`, :mod:`materialpoint`, :mod:`packing` and
+:mod:`calibration` work outside YADE.
 """
 import importlib
 
@@ -23,7 +24,8 @@ from . import mesh
 # Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation", "EnergyBalance": "energy",
-	"materialpoint": None, "bonded": None, "packing": None, "esys": None, "plots": None, "report": None, "verification": None, "vtk": None,
+	"materialpoint": None, "bonded": None, "packing": None, "calibration": None, "virtualtest": None, "esys": None, "plots": None,
+	"report": None, "verification": None, "vtk": None,
 }
 
 

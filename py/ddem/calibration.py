@@ -24,6 +24,7 @@ to the next point by scipy's bounded least squares. Breaking of bonds is chaotic
 steps of finite differences are large, and planes average over what scatters where a Jacobian or a simplex would follow it. The search stops at the first
 point that meets all targets.
 """
+import itertools
 import math
 import time
 from dataclasses import dataclass, field
@@ -36,15 +37,16 @@ from .evaluations import EvaluationError, OutOfBudget, Point
 DIGITS = 6  #: significant digits of parameters that are tried: more would say nothing, and keep a repeated start from recognising them
 _HALF = 0.5  # a step that leaves more than this of what was missed is a poor one
 _NOTHING = 0.05  # elasticities below it do not count
-_ALIKE = 0.2  # targets whose elasticities differ in direction by less than this answer alike; noise of breaking bonds moves them by 0.1
+_FAR = 2.0  # two targets answer alike if their misses can only be brought together by a larger change of the parameters' logarithms
 _NEAR = 0.01  # a parameter this close to a bound, in its logarithm, has hit it
 _SMALLEST_STEP = 2e-3  # a step of parameters below it leads nowhere, far below what finite differences see
 _RADIUS = 0.7  # of the first steps by models of the response: no parameter changes by more than a factor of two
 _CAUTION = 0.3  # a parameter changes by a factor of e only for more than this part of a tolerance
 _WIDER = 3  # times the usual step of finite differences is taken before the search gives up
-_PATIENCE = 6  # so many poor steps in a row end the search
+_PATIENCE = 6  # so many steps in a row that bring it less than a tenth closer end the search
 _PASSES = 3  # a model is made anew around the point to which it leads
-_SCATTER = 0.02  # of measures between neighbouring points, expected when points are weighted
+_SURPRISE = 0.06  # a miss that the model did not foresee by more than this part halves the reach of the next step
+_SCATTER = 0.01  # of measures between neighbouring points, expected when points are weighted
 _CURVATURE = 0.5  # of measures over parameters, expected likewise
 _SPARE = 2  # points more than a plane needs, before their scatter about it says something
 
@@ -153,7 +155,7 @@ class Calibration:
 		elasticities, errors = (None, None) if self._around is None else self.response(self._logs(self.best.values))[1:]
 		return Outcome(
 			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets, time.perf_counter() - begin,
-			{} if self.best is None else self._bounds_hit(self.best)
+			{} if self.best is None else self._bounds_hit(self._logs(self.best.values))
 		)
 
 	# --- the search
@@ -183,7 +185,7 @@ class Calibration:
 		tolerances = np.array([target.tolerance for target in self.targets])
 		radius, idle, wide = _RADIUS, 0, False
 		while True:
-			x, worst = self._logs(self.best.values), self._worst(self.best)
+			x, (_, distance) = self._logs(self.best.values), self._rank(self.best)
 			there, expected = self._aim(x, radius, tolerances)
 			near = min(np.abs(self._logs(step.point.values) - there).max() for step in self.steps) < _SMALLEST_STEP
 			hopeless = near and np.abs(expected / tolerances).max() > 1  # the model leads nowhere new, and not to the targets either
@@ -197,8 +199,8 @@ class Calibration:
 				wide, idle = True, 0
 				continue
 			size, surprise = np.abs(there - x).max(), math.inf if point.error else np.abs(self._misses(point) - expected).max()
-			radius = 0.5 * size if surprise > 3 * _SCATTER else max(radius, min(2 * size, 1.0))
-			idle = 0 if self._worst(self.best) < 0.9 * worst else idle + 1
+			radius = 0.5 * size if surprise > _SURPRISE else max(radius, min(2 * size, 1.0))
+			idle = 0 if self._rank(self.best)[1] < 0.9 * distance else idle + 1
 			moved = np.abs(self._logs(self.best.values) - self._logs(self._around)).max()
 			if idle == 2 and moved > math.log1p(self.step):
 				self._differences(self._logs(self.best.values))
@@ -268,7 +270,7 @@ class Calibration:
 				continue  # told already
 			parameter = self.parameters[(columns or range(len(points)))[k]].name if purpose == "sensitivity" else None
 			self.steps.append(Step(len(self.steps) + 1, purpose, point, parameter))
-			if not point.error and (self.best is None or self._worst(point) < self._worst(self.best)) and stop:
+			if not point.error and (self.best is None or self._rank(point) < self._rank(self.best)) and stop:
 				self.best = point
 			self.tell(self.steps[-1])
 		if stop and self.best and self._worst(self.best) <= 1:
@@ -282,13 +284,17 @@ class Calibration:
 		"""Logarithmic distances from the targets."""
 		return np.log([point.measured[target.name] / target.value for target in self.targets])
 
+	def _rank(self, point):
+		"""Points that meet all targets come first, then those whose distances over tolerances have the smallest sum of squares."""
+		return self._worst(point) > 1, math.hypot(*(target.miss(point) / target.tolerance for target in self.targets))
+
 	def _worst(self, point):
 		"""The largest distance from a target over its tolerance; all targets are met up to 1."""
 		return max(abs(target.miss(point)) / target.tolerance for target in self.targets)
 
 	# --- why it ended
-	def _bounds_hit(self, point):
-		x = self._logs(point.values)
+	def _bounds_hit(self, x):
+		"""Parameter -> "lower" or "upper" for those of log-parameters *x* that are at a bound."""
 		hit = {}
 		for k, parameter in enumerate(self.parameters):
 			if min(x[k] - self._lower[k], self._upper[k] - x[k]) < _NEAR:
@@ -297,39 +303,32 @@ class Calibration:
 
 	def _explain(self):
 		"""Sentences on why the search ended at the best point without meeting all targets."""
-		why, best = [], self.best
-		slopes = self.response(self._logs(best.values))[1]
-		hit, missed = self._bounds_hit(best), [i for i, target in enumerate(self.targets) if abs(target.miss(best)) > target.tolerance]
-		gradient = slopes.T @ (self._misses(best) / np.square([target.tolerance for target in self.targets]))  # downhill is against it
-		for k, parameter in enumerate(self.parameters):
-			side = hit.get(parameter.name)
-			if side and (-gradient[k] > 0) == (side == "upper") and abs(slopes[missed, k]).max() > _NOTHING:
-				why.append(f"the {side} bound of {parameter.name}, {getattr(parameter, side):g}, keeps it from going further")
+		x, misses, why = self._logs(self.best.values), self._misses(self.best), []
+		tolerances = np.array([target.tolerance for target in self.targets])
+		slopes = self.response(x)[1]
+		there, expected = self._aim(x, math.inf, tolerances)  # where the response would lead at last
+		missed, unmet = np.flatnonzero(np.abs(misses) > tolerances), np.abs(expected) > tolerances
 		size = np.abs(slopes).max(axis=1)
+		if unmet.any():
+			for name, side in self._bounds_hit(there).items():
+				k = [p.name for p in self.parameters].index(name)
+				if np.abs(slopes[unmet, k]).max() > _NOTHING:
+					why.append(f"the {side} bound of {name}, {getattr(self.parameters[k], side):g}, keeps it from going further")
 		for i in missed:
 			if size[i] < _NOTHING:
 				why.append(f"no tuned parameter moves {self.targets[i].name} (all elasticities are below {_NOTHING:g}): tune another one")
-		rows = [i for i in range(len(self.targets)) if size[i] >= _NOTHING]
-		for a in rows:
-			for b in rows:
-				if a < b and (a in missed or b in missed) and _alike(slopes[a], slopes[b]):
-					names = f"{self.targets[a].name} and {self.targets[b].name}"
-					why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
-		if not why:
-			why.append(
-				"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, "
-				"allow a larger tolerance, or start elsewhere"
-			)
-		return why
+		for a, b in itertools.combinations(np.flatnonzero(size >= _NOTHING), 2):
+			if {a, b} & set(missed) and abs(misses[a] - misses[b]) > _FAR * np.linalg.norm(slopes[a] - slopes[b]):
+				names = f"{self.targets[a].name} and {self.targets[b].name}"
+				why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
+		return why or [
+			"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, "
+			"allow a larger tolerance, or start elsewhere"
+		]
+
 
 class _Reached(Exception):
 	"""All targets are met."""
-
-
-def _alike(one, two):
-	"""Whether two rows of elasticities point in the same direction, or in opposite ones."""
-	one, two = one / np.linalg.norm(one), two / np.linalg.norm(two)
-	return np.linalg.norm(one - np.sign(one @ two) * two) < _ALIKE
 
 
 def _rounded(value):

@@ -33,13 +33,12 @@ class Progress:
 
 	:param model: "rigid" or "deformable"
 	:param parameters, targets: those of the calibration
-	:param step: of its finite differences
 	:param write: called with each line
 	"""
 
-	def __init__(self, model, parameters, targets, step, write=print):
+	def __init__(self, model, parameters, targets, write=print):
 		self.tuned, self.measures = [TUNABLES[model][p.name] for p in parameters], [MEASURES[t.name] for t in targets]
-		self.targets, self.step, self.write = targets, step, write
+		self.targets, self.write = targets, write
 
 	def header(self):
 		"""Names and units of the columns, and the targets below."""

@@ -23,7 +23,7 @@ def calibrated(ucs=60e6, seeds=(1, ), folder=None, bounds=None):
 	lines = []
 	tuned = parameters("rigid", ["young", "cohesion"], {"young": 40e9, "cohesion": 100e6}, bounds)
 	targets = [Target("young", 40e9, 0.01), Target("ucs", ucs, 0.02)]
-	progress = Progress("rigid", tuned, targets, 0.08, lines.append)
+	progress = Progress("rigid", tuned, targets, lines.append)
 	progress.header()
 	with Bench(bonded, [{"seed": seed} for seed in seeds], {"specimen": "prism"}, folder and folder / "evaluations.jsonl") as bench:
 		outcome = Calibration(tuned, targets, bench, tell=progress).run()
