@@ -145,7 +145,7 @@ class CompressionTest:
 			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
 		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
 		self._peak = max(self._peak, row["stress"])
-		if len(self.rows) > self._held and (stress < self.stop * self._peak).all():
+		if self.stop and len(self.rows) > self._held and (stress < self.stop * self._peak).all():
 			self.stopped = f"stress stayed below {100 * self.stop:g} % of the peak"
 			O.pause()
 		self._bar.update(O.iter - self._first - self._bar.n)
