@@ -51,10 +51,12 @@ def main():
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	duration = options.strain * platens.height / closing + 0.5 * options.ramp
 	kind = ucs.TensionTest if options.test == "tension" else ucs.CompressionTest
-	test = kind(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical, rows=options.rows)
+	shown = options.pictures or options.vtk
+	test = kind(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical, rows=options.rows, snapshots=shown)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
 	run.setup, run.parameters = setup, sample
+	run.extra.update(waves(platens, run))
 	report = Report(
 		[run], options.out, f"Uniaxial {options.test} of bonded spheres", settings=settings(options, platens), command=commandline.command(),
 		options=commandline.plain(options), versions=versions(), notes=notes(options, platens, run, closing), pictures=options.pictures, pdf=options.pdf
@@ -270,15 +272,18 @@ def settings(options, platens):
 	]
 
 
+def waves(platens, run):
+	"""Density of the sample as a whole, and the speed of a wave along it, √(E/ρ), for the summary."""
+	density = sum(O.bodies[int(i)].state.mass for i in platens.sample.ids) / (platens.area * platens.height)
+	return {"sample_density_kg_m3": density, "wave_speed_m_s": math.sqrt(run.strength.young / density) if run.strength.young > 0 else None}
+
+
 def notes(options, platens, run, closing):
 	said = []
-	young = run.strength.young
-	if math.isfinite(young):
-		mass = sum(O.bodies[int(i)].state.mass for i in platens.sample.ids)
-		density = mass / (platens.area * platens.height)
-		wave = math.sqrt(young / density)
+	wave = run.extra["wave_speed_m_s"]
+	if wave:
 		said.append(
-			f"Rate. The sample has {parameter_tables.number(round(density))} kg/m³ as a whole, so that a wave runs along it at about √(E/ρ) = {wave:.0f} m/s, "
+			f"Rate. The sample has {parameter_tables.number(round(run.extra['sample_density_kg_m3']))} kg/m³ as a whole, so that a wave runs along it at about √(E/ρ) = {wave:.0f} m/s, "
 			f"{parameter_tables.number(round(wave / options.velocity))} times as fast as a wall, and needs {1e6 * platens.height / wave:.1f} µs from end to end, in "
 			f"which the strain grows by {100 * closing / wave:.3f} %. Where the two wall forces differ, the test is not quasi-static."
 		)

@@ -82,12 +82,13 @@ class CompressionTest:
 	:param recorders: called at the start, now and then, and at the end, for instance :class:`vtk.Recorder`
 	:param critical_dt: largest stable time step [s], to report
 	:param rows: records in the longest time
+	:param snapshots: False keeps none between start and end, where nothing is to be drawn
 	"""
 
 	kind = "compression"
 	sense = 1  #: in which stress, strain and forces of the platens, positive in compression, are recorded
 
-	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS):
+	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS, snapshots=True):
 		if not duration > 0:
 			raise ValueError(f"duration = {duration} s must be positive")
 		if not 0 <= stop < 1:
@@ -96,7 +97,7 @@ class CompressionTest:
 		if rows < SNAPSHOTS:
 			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
 		self.specimen, self.longest = Specimen(platens.sample), rows
-		self.rows, self.snapshots, self._peak = [], [], 0.0
+		self.rows, self.snapshots, self._peak, self._between = [], [], 0.0, snapshots
 		self.stopped = self._filed = None
 
 	def run(self, progress=True):
@@ -141,7 +142,7 @@ class CompressionTest:
 			"energy_drift": self.book.drift
 		}
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
-		if len(self.rows) % (self.longest // SNAPSHOTS) == 0:
+		if self._between and len(self.rows) % (self.longest // SNAPSHOTS) == 0:
 			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
 		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
 		self._peak = max(self._peak, row["stress"])

@@ -15,14 +15,9 @@ import dataclasses
 import json
 import math
 import os
-import shutil
-import signal
-import subprocess
-import sys
 import tempfile
-import threading
 
-from . import packing
+from . import packing, processes
 from .evaluations import EvaluationError
 
 ROWS = 4000  #: records up to the largest strain, so that a peak at a twentieth of it is met within 0.5 %
@@ -146,7 +141,7 @@ def perform(setup, values, case, cache=None):
 	platens, critical = {"rigid": _rigid, "deformable": _deformable}[setup.model](setup, values, case["seed"], velocity, cache)
 	O.dt = setup.safety * critical
 	duration = strain * setup.height / (2 * abs(velocity)) + 0.5 * setup.ramp
-	test = (ucs.TensionTest if tension else ucs.CompressionTest)(platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS)
+	test = (ucs.TensionTest if tension else ucs.CompressionTest)(platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS, snapshots=False)
 	run = test.run(progress=False)
 	measures = run.strength
 	if not measures.peaked:
@@ -234,8 +229,7 @@ class SeparateYade:
 
 	def __init__(self, setup, fixed=None, cache=None, yade=None):
 		self.setup, self.fixed, self.cache = setup, dict(fixed or {}), cache
-		self.yade = yade or shutil.which(getattr(sys, "yade_argv", ["yade"])[0]) or "yade"
-		self._running, self._lock, self._stopped = set(), threading.Lock(), False
+		self._processes = processes.YadeProcesses(yade)
 
 	def settings(self):
 		"""What a result depends on beside the tuned parameters, as plain data: specimen, test, fixed parameters, and the plugin."""
@@ -250,35 +244,21 @@ class SeparateYade:
 			request, answer, log = paths
 			with open(request, "w") as file:
 				json.dump({"setup": dataclasses.asdict(self.setup), "values": {**self.fixed, **values}, "case": case, "cache": self.cache}, file)
-			code = self._run([self.yade, "-n", "-x", "-j1", RUNNER, request, answer], log)
+			try:
+				code = self._processes.run(RUNNER, [request, answer], log)
+			except processes.Stopped as error:
+				raise EvaluationError(str(error)) from None
 			if os.path.exists(answer):
 				with open(answer) as file:
 					found = json.load(file)
 				if found["error"] is None:
 					return found["measured"]
 				raise EvaluationError(found["error"])
-			raise EvaluationError(f"YADE {_ending(code)} without a result; its last lines: {_tail(log)}")
+			raise EvaluationError(f"YADE {processes.ending(code)} without a result; its last lines: {processes.tail(log)}")
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
-		with self._lock:
-			self._stopped = True
-			for process in self._running:
-				process.kill()
-
-	def _run(self, command, log):
-		environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
-		with open(log, "wb") as file:
-			with self._lock:
-				if self._stopped:
-					raise EvaluationError("interrupted")
-				process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, env=environment, start_new_session=True)
-				self._running.add(process)
-			try:
-				return process.wait()
-			finally:
-				with self._lock:
-					self._running.discard(process)
+		self._processes.stop()
 
 
 def answer(request, path):
@@ -297,17 +277,3 @@ def answer(request, path):
 	with open(path + ".unfinished", "w") as file:
 		json.dump(found, file)
 	os.replace(path + ".unfinished", path)
-
-
-def _ending(code):
-	if code >= 0:
-		return f"ended with exit code {code}"
-	try:
-		return f"was ended by {signal.Signals(-code).name}"
-	except ValueError:
-		return f"was ended by signal {-code}"
-
-
-def _tail(log, lines=5):
-	with open(log, errors="replace") as file:
-		return " | ".join(line.strip() for line in file.read().splitlines()[-lines:] if line.strip()) or "none"

@@ -24,5 +24,5 @@ def load(name):
 
 def run(module, monkeypatch, *arguments):
 	"""What a user gets from the script with these arguments."""
-	monkeypatch.setattr(sys, "argv", [f"scripts/{module.__name__}.py", *map(str, arguments)])
+	monkeypatch.setattr(sys, "argv", [path(module.__name__), *map(str, arguments)])
 	return module.main()
