@@ -35,23 +35,31 @@ Law2_ScGeom_BondedPhys_MohrCoulomb* BondedInteractionLoop::law() const
 
 bool BondedInteractionLoop::oneByOne() const
 {
-	return !callbacks.empty() || scene->isPeriodic;
+	return !callbacks.empty() || loopOnSortedInteractions || ompThreads > 0 || scene->isPeriodic || divided;
 }
 
 void BondedInteractionLoop::action()
 {
+	if (knownScene != scene) divided = false;
 	Law* const bondLaw = law();
 	if (!bondLaw || oneByOne()) {
+		const std::lock_guard<std::mutex> lock(busy);
+		writeBack();
 		held.clear();
 		known = -1;
+	} else {
+		const std::lock_guard<std::mutex> lock(busy);
+		if (!locateHeld()) {
+			collect(*bondLaw);
+			locateHeld();
+		}
+	}
+	if (known < 0 || divided) {
 		InteractionLoop::action();
 		return;
 	}
-	if (!locateHeld()) {
-		collect(*bondLaw);
-		locateHeld();
-	}
 	actOnOthers();
+	const std::lock_guard<std::mutex> lock(busy);
 	advance(*bondLaw);
 }
 
@@ -63,10 +71,21 @@ bool BondedInteractionLoop::locateHeld()
 	for (const Held& h : held) {
 		if (!h.interaction) continue;
 		const auto place = size_t(h.interaction->linIx);
-		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys) return false; // somebody has erased it
+		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys || !h.interaction->geom) return false; // somebody has erased it
+		if (exposed && !constantsHold(size_t(&h - held.data()))) return false;
 		isHeld[place] = 1;
 	}
 	return true;
+}
+
+/// Whether what the system was made from is still so; somebody who looked may have changed it.
+bool BondedInteractionLoop::constantsHold(size_t bond) const
+{
+	const BondedPhys& phys = *held[bond].phys;
+	const auto&       geom = static_cast<const ScGeom&>(*held[bond].interaction->geom);
+	const auto        is   = [&](ddem::BondSystem::Constant which, Real value) { return system.constant(which, bond) == value; };
+	using System           = ddem::BondSystem;
+	return phys.bonded && is(System::Normal, phys.kn) && is(System::Shear, phys.ks) && is(System::Radius1, geom.radius1) && is(System::Radius2, geom.radius2);
 }
 
 /// What InteractionLoop does, for everything but the bonds.
@@ -127,8 +146,9 @@ bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 
 void BondedInteractionLoop::collect(Law& bondLaw)
 {
-	expose();
+	writeBack();
 	held.clear();
+	divided = scene->subdomain != 0;
 	for (const auto& I : *scene->interactions) {
 		auto* phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
 		if (phys && phys->bonded) held.push_back({ I, phys });
@@ -152,6 +172,7 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 		const Interaction& I = *held[j].interaction;
 		const BondedPhys&  phys = *held[j].phys;
 		const std::int32_t first = placeOf(I.getId1()), second = placeOf(I.getId2());
+		divided |= (*scene->bodies)[I.getId1()]->subdomain != 0 || (*scene->bodies)[I.getId2()]->subdomain != 0;
 		system.add(first, second, phys.bond(static_cast<const ScGeom&>(*I.geom)), phys.strength());
 		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
 		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress }) != ddem::BondFailure::None)
@@ -189,18 +210,19 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 	exposed           = false;
 	for (const std::int32_t bond : overloaded) {
 		const auto& row = system.row(size_t(bond));
+		if (!held[size_t(bond)].interaction) continue; // broken, but one of its bodies has lost its place
 		if (!std::isfinite(row.normalStress) || !std::isfinite(row.shearStress)) stopAtNotFinite(bond);
 	}
 	Real lost = 0;
 	if (!esys) {
 		for (const std::int32_t bond : overloaded)
-			lost += system.row(size_t(bond)).energy;
+			if (held[size_t(bond)].interaction) lost += system.row(size_t(bond)).energy;
 		breakOverloaded(bondLaw, overloaded);
 	}
 	applyLoads();
 	if (scene->trackEnergy) bondLaw.bookBondEnergy(stored - lost);
 	if (somebodyMayLook(*scene, *this, lastExposure, neverLooksAtBonds)) {
-		expose();
+		writeBack();
 		lastExposure = std::chrono::steady_clock::now();
 	}
 }
@@ -233,10 +255,25 @@ void BondedInteractionLoop::applyLoads()
 
 void BondedInteractionLoop::expose()
 {
+	const std::lock_guard<std::mutex> lock(busy);
+	writeBack();
+}
+
+std::map<std::pair<int, int>, BondNow> BondedInteractionLoop::bondsNow() const
+{
+	const std::lock_guard<std::mutex>      lock(busy);
+	std::map<std::pair<int, int>, BondNow> result;
+	for (size_t j = 0; j < held.size(); j++)
+		if (const auto& I = held[j].interaction) result[std::minmax(I->getId1(), I->getId2())] = { system.row(j).normalStress, system.row(j).shearStress, held[j].phys->bondRadius };
+	return result;
+}
+
+void BondedInteractionLoop::writeBack()
+{
 	if (exposed) return;
 	exposed = true;
 	for (size_t j = 0; j < held.size(); j++) {
-		if (!held[j].interaction) continue;
+		if (!held[j].interaction || !held[j].interaction->geom || held[j].interaction->phys.get() != held[j].phys) continue; // broken, or erased by somebody
 		exposeGeometry(j);
 		BondedPhys&    phys  = *held[j].phys;
 		const auto&    geom  = static_cast<const ScGeom&>(*held[j].interaction->geom);

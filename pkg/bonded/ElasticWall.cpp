@@ -73,6 +73,7 @@ void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond(int wall, const std::vec
 		geom->contactPoint            = body.state->pos - geom->normal * geom->normal.dot(branch);
 		auto phys                     = makeWallContact(*material, geom->radius2);
 		phys->bonded                  = true;
+		phys->ks                      = ddem::wallSpring(geom->radius2, material->shearStiffness);
 		phys->bondedBranch            = branch;
 		auto interaction              = boost::make_shared<Interaction>(wall, id); // in the order of the functors, which must not be swapped later
 		interaction->geom             = geom;
@@ -91,17 +92,20 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 	Real           stored = 0;
 	if (phys.bonded) {
 		const Vector3r displacement = branch - phys.bondedBranch;
-		phys.normalForce            = ddem::eigenVector(ddem::bondedWallForce(
+		const Vector3r force        = ddem::eigenVector(ddem::bondedWallForce(
                         geom.radius2, phys.wallStiffness, phys.shearStiffness, ddem::spaceVector(displacement), ddem::spaceVector(geom.normal)));
-		stored                      = -0.5 * phys.normalForce.dot(displacement);
+		phys.normalForce            = force.dot(geom.normal) * geom.normal;
+		phys.shearForce             = force - phys.normalForce;
+		stored                      = -0.5 * force.dot(displacement);
 	} else {
 		const Real distance = geom.normal.dot(branch), force = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
 		if (!(force > 0)) return false;
 		stored = 0.5 * force * (geom.radius2 - distance);
 	}
-	scene->forces.addForce(I->getId1(), -phys.normalForce);
-	scene->forces.addForce(I->getId2(), phys.normalForce);
+	const Vector3r force = phys.normalForce + phys.shearForce;
+	scene->forces.addForce(I->getId1(), -force);
+	scene->forces.addForce(I->getId2(), force);
 	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::WallElastic, stored);
 	return true;
 }

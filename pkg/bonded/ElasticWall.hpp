@@ -27,12 +27,12 @@ public:
 };
 REGISTER_SERIALIZABLE(ElasticWallMat);
 
-class ElasticWallPhys : public NormPhys {
+class ElasticWallPhys : public NormShearPhys {
 public:
 	virtual ~ElasticWallPhys() = default;
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR(ElasticWallPhys, NormPhys,
-		"Contact of a sphere with a wall of :yref:`ElasticWallMat`.",
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(ElasticWallPhys, NormShearPhys,
+		"Contact of a sphere with a wall of :yref:`ElasticWallMat`. :yref:`ks<NormShearPhys.ks>` and :yref:`shearForce<NormShearPhys.shearForce>` are zero unless the sphere is bonded to it.",
 		((Real,wallStiffness,0,Attr::readonly,"Stiffness :math:`K` of the wall [Pa]"))
 		((Real,shearStiffness,0,Attr::readonly,"Stiffness :math:`K_s` along the wall [Pa], where bonded"))
 		((bool,bonded,false,Attr::readonly,"Whether the sphere is bonded to the wall"))
@@ -40,7 +40,7 @@ public:
 		createIndex();
 	);
 	// clang-format on
-	REGISTER_CLASS_INDEX(ElasticWallPhys, NormPhys);
+	REGISTER_CLASS_INDEX(ElasticWallPhys, NormShearPhys);
 };
 REGISTER_SERIALIZABLE(ElasticWallPhys);
 

@@ -8,6 +8,8 @@
 #include <pkg/ddem/kernel/EigenSpace.hpp>
 #include <pkg/ddem/kernel/EsysContact.hpp>
 
+#include <set>
+
 namespace yade {
 
 DDEM_PLUGIN((Law2_ScGeom_BondedPhys_MohrCoulomb))
@@ -87,7 +89,8 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 	const Real contactPower = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2);
 	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped + 0.5 * scene->dt * (bondPower - contactPower);
 	record(parted);
-	return applyContact(I, contact);
+	applyContact(I, contact);
+	return branch.norm() < touching;
 }
 
 ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
@@ -116,8 +119,12 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
 {
-	const State &state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
-	return applyContact(I, contactLoadsOf(static_cast<const ScGeom&>(*I.geom), static_cast<BondedPhys&>(*I.phys), state1, state2, branchOf(I)));
+	const auto&    geom   = static_cast<const ScGeom&>(*I.geom);
+	const State &  state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
+	const Vector3r branch = branchOf(I);
+	applyContact(I, contactLoadsOf(geom, static_cast<BondedPhys&>(*I.phys), state1, state2, branch));
+	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the spheres touch, or a new contact would know nothing of that.
+	return branch.norm() < geom.radius1 + geom.radius2;
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)
@@ -128,7 +135,7 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const 
 	scene->forces.addTorque(I.getId2(), moment2);
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
+void Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
 {
 	if (loads.touching) applyLoads(I, loads.force, loads.moment1, loads.moment2);
 	if (scene->trackEnergy) {
@@ -136,7 +143,6 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, cons
 		energy.add(*scene->energy, BondedEnergy::Friction, loads.dissipated);
 		if (loads.damped != 0) energy.add(*scene->energy, BondedEnergy::ContactDamping, loads.damped);
 	}
-	return loads.touching;
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bond)
@@ -157,29 +163,52 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bo
 
 boost::python::list Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds() const
 {
+	std::vector<shared_ptr<BrokenBond>> now;
+	{
+		const std::lock_guard<std::mutex> lock(recording);
+		now = broken;
+	}
 	boost::python::list list;
-	for (const auto& bond : broken)
+	for (const auto& bond : now)
 		list.append(bond);
 	return list;
 }
 
+long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount() const
+{
+	const std::lock_guard<std::mutex> lock(recording);
+	return long(broken.size());
+}
+
+long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const std::vector<int>& ids) const
+{
+	const std::set<int>               those(ids.begin(), ids.end());
+	const std::lock_guard<std::mutex> lock(recording);
+	return std::count_if(broken.begin(), broken.end(), [&those](const auto& bond) { return those.count(bond->id1) && those.count(bond->id2); });
+}
+
 boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 {
-	const auto current = Omega::instance().getScene();
+	std::map<std::pair<int, int>, BondNow> all;
+	const auto                             current = Omega::instance().getScene();
 	for (const auto& engine : current->engines)
-		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
-	std::map<std::pair<int, int>, const BondedPhys*> holding;
-	for (const auto& I : *current->interactions) {
-		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
-		if (phys && phys->bonded) holding[std::minmax(I->getId1(), I->getId2())] = phys;
+		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) all = loop->bondsNow();
+	if (all.empty() || !Omega::instance().isRunning()) {
+		for (const auto& engine : current->engines)
+			if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
+		all.clear();
+		for (const auto& I : *current->interactions) {
+			const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
+			if (phys && phys->bonded) all[std::minmax(I->getId1(), I->getId2())] = { phys->normalStress, phys->shearStress, phys->bondRadius };
+		}
 	}
 	std::vector<Vector2i> ids;
 	std::vector<Real>     normalStress, shearStress, radius;
-	for (const auto& [pair, phys] : holding) {
+	for (const auto& [pair, bond] : all) {
 		ids.emplace_back(pair.first, pair.second);
-		normalStress.push_back(phys->normalStress);
-		shearStress.push_back(phys->shearStress);
-		radius.push_back(phys->bondRadius);
+		normalStress.push_back(bond.normalStress);
+		shearStress.push_back(bond.shearStress);
+		radius.push_back(bond.radius);
 	}
 	boost::python::dict result;
 	result["ids"]          = ids;
@@ -204,6 +233,8 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 		particles.push_back({ body->state->mass, body->state->inertia.minCoeff() });
 	}
 	for (const auto& I : *scene.interactions) {
+		if (const auto* held = dynamic_cast<const ElasticWallPhys*>(I->phys.get()); held && held->bonded)
+			springs.push_back({ place[size_t(I->getId2())], -1, held->kn, held->ks, 0, 0, 0, 0 });
 		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
 		if (!phys || !I->geom) continue;
 		const auto&      geom  = static_cast<const ScGeom&>(*I->geom);

@@ -17,14 +17,16 @@ public:
 	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
 
 	ddem::BondConvention bondConvention() const { return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent; }
-	/// Replaces a bond that has failed under these stresses by a contact, which acts at once, and records it. \returns whether the two touch
+	/// Replaces a bond that has failed under these stresses by a contact, which acts at once, and records it. \returns whether the spheres touch
 	bool breakBond(Interaction& I, const ddem::BondStress& stress);
 	/// Adds stored energy to the book.
 	void bookBondEnergy(Real stored) { energy.add(*scene->energy, BondedEnergy::BondElastic, stored); }
 	void postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&);
 
 	boost::python::list brokenBonds() const;
-	long                brokenCount() const { return long(broken.size()); }
+	long                brokenCount() const;
+	/// Broken bonds between bodies of a list.
+	long brokenAmong(const std::vector<int>& ids) const;
 	boost::python::dict bonds() const;
 	/// Bound on the time step [s], see ddem::stableStep.
 	static Real criticalTimeStep();
@@ -39,8 +41,8 @@ public:
 		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the "
 		"tension limit (see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
 		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending "
-		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii, failure one step later, friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
-		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond that breaks under compression keeps "
+		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii (the stiffness is not symmetric: a sample left alone slowly begins to shake, at any time step), failure one step later, friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
+		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond of spheres that touched and that breaks under compression keeps "
 		"its normal force; its tangential force starts from zero. Gradual friction and viscous damping are options of :yref:`BondedMat`.\n\n"
 		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* (dissipated) [J].\n\n"
 		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast as one by one in an :yref:`InteractionLoop`.\n\n"
@@ -51,26 +53,26 @@ public:
 		/*ctor*/,
 		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
 		.def("brokenCount",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount,"Number of broken bonds.")
+		.def("brokenAmong",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong,(boost::python::arg("ids")),"Number of broken bonds between bodies of a list of ids.")
 		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), *normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
 		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for its elastic walls: :math:`2/\\omega` of the worst pair, each "
-			"particle's mass shared out between its springs; about a tenth below the exact value. Infinite without springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
+			"particle's mass shared out between its springs; about a tenth below the exact value. That holds for small overlaps and the consistent convention; the stiffness of the other one is not symmetric. Infinite without springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
 		.staticmethod("criticalTimeStep")
 	);
 	// clang-format on
 
 private:
-	/// One step of the contact that a pair has instead of a bond. \returns whether the two touch
+	/// One step of the contact that a pair has instead of a bond. \returns whether the spheres touch
 	bool advanceContact(Interaction& I);
 	ddem::ContactLoads contactLoadsOf(const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch) const;
 	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
-	/// Whether the two still touch.
-	bool applyContact(const Interaction& I, const ddem::ContactLoads& loads);
+	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);
 	void record(const shared_ptr<BrokenBond>& bond);
 
 	bool         esys = false;
 	BondedEnergy energy;
-	std::mutex   recording;
+	mutable std::mutex recording;
 };
 REGISTER_SERIALIZABLE(Law2_ScGeom_BondedPhys_MohrCoulomb);
 

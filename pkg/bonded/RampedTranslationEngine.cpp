@@ -32,7 +32,7 @@ void RampedTranslationEngine::apply(const vector<Body::id_t>& bodies)
 		Real      force = 0;
 		scene->forces.sync();
 		for (const auto id : bodies)
-			if (mask <= 0 || Body::byId(id, scene)->maskCompatible(mask)) force -= scene->forces.getForce(id).dot(translationAxis);
+			if (const auto& body = Body::byId(id, scene); body && (mask <= 0 || body->maskCompatible(mask))) force -= scene->forces.getForce(id).dot(translationAxis);
 		// Work up to the present positions: between two steps leapfrog moves at one speed and sees the mean of their forces.
 		const Real done = 0.5 * (lastForce + force) * speed(scene->time - scene->dt) * scene->dt;
 		lastForce       = force;
@@ -40,7 +40,7 @@ void RampedTranslationEngine::apply(const vector<Body::id_t>& bodies)
 		scene->energy->add(-done, "externalWork", workIx, false);
 	}
 	for (const auto id : bodies)
-		Body::byId(id, scene)->state->vel += now * translationAxis;
+		if (const auto& body = Body::byId(id, scene)) body->state->vel += now * translationAxis; // else it was erased
 }
 
 } // namespace yade

@@ -61,6 +61,9 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 		pairs = packing.neighbours(gap)
 	else:
 		pairs = packing.bonds if packing.bonds is not None else packing.neighbours(DEFAULT_GAP * packing.radii.max())
+	for i, j in pairs:
+		if (packing.centres[i] == packing.centres[j]).all():
+			raise ValueError(f"spheres {i} and {j} of the packing have the same centre and cannot be bonded")
 	if len(pairs) == 0:
 		raise ValueError(f"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the smallest radius is {packing.radii.min()} m)")
 	spheres = []
@@ -128,13 +131,14 @@ class BondedSample:
 	@property
 	def bonds(self):
 		"""Bonds that hold: body ids (m, 2), in ascending order."""
-		return np.array(law().bonds()["ids"], dtype=int).reshape(-1, 2)
+		pairs = np.array(law().bonds()["ids"], dtype=int).reshape(-1, 2)
+		return pairs[self._mine(pairs)]
 
 	@property
 	def bond_stresses(self):
 		"""Normal (tension positive) and shear stress (m, 2) [Pa] of the bonds that hold, in the order of :attr:`bonds`."""
 		bonds = law().bonds()
-		return np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)
+		return np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)[self._mine(np.array(bonds["ids"], dtype=int).reshape(-1, 2))]
 
 	@property
 	def broken(self):
@@ -143,12 +147,17 @@ class BondedSample:
 		records = [
 			(b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode, b.normalStress, b.shearStress, b.energy) for b in law().brokenBonds()
 		]
-		return np.array(records, dtype=broken_bonds.DTYPE)
+		records = np.array(records, dtype=broken_bonds.DTYPE)
+		return records[self._mine(np.column_stack([records["id1"], records["id2"]]))]
 
 	@property
 	def broken_fraction(self):
 		"""Broken bonds over those at the start [-]."""
-		return law().brokenCount() / self.initial_bonds
+		return law().brokenAmong(self.ids.tolist()) / max(self.initial_bonds, 1)
+
+	def _mine(self, pairs):
+		"""Which pairs of body ids are both of this sample."""
+		return np.isin(pairs, self.ids).all(axis=1)
 
 	@property
 	def damage(self):
@@ -262,7 +271,7 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 
 
 def critical_time_step():
-	"""Rigorous bound on the time step [s] of the bonded spheres of the scene, see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
+	"""Rigorous bound on the time step [s] of the bonded spheres of the scene (in the consistent convention), see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
 	return Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep()
 
 
@@ -270,7 +279,10 @@ def time_step(safety=0.8):
 	"""A stable time step [s]: *safety* times :func:`critical_time_step`. The rest below 1 is for contacts that form later and for accuracy."""
 	if not 0 < safety <= 1:
 		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
-	return safety * critical_time_step()
+	critical = critical_time_step()
+	if math.isinf(critical):
+		raise ValueError("nothing limits the time step: the scene has no bonds, contacts or walls near spheres yet; set O.dt yourself")
+	return safety * critical
 
 
 def check():
@@ -286,6 +298,8 @@ def check():
 	):
 		if name not in names:
 			raise RuntimeError(f"O.engines has no {name}: {purpose}; see ddem.bonded.engines()")
+	if names.count("InteractionLoop") > 1:
+		raise RuntimeError("O.engines has more than one InteractionLoop: every bond would act more than once; see ddem.bonded.engines()")
 	order = [names.index(name) for name in ("ForceResetter", "InteractionLoop", "NewtonIntegrator")]
 	if order != sorted(order):
 		raise RuntimeError("wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; see ddem.bonded.engines()")

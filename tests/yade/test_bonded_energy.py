@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from yade import BondedMat, O, ddem
+from yade import BondedMat, O, Vector3, ddem, utils
 from yade.ddem import bonded, packing
 
 from recording import run_recording
@@ -39,8 +39,6 @@ def crush(spheres, convention="consistent", safety=0.2, duration=8e-5, viscosity
 	platens = bonded.platens(sample, velocity=0.5, ramp=2e-5)
 	O.engines = bonded.engines(platens, viscosity=viscosity, convention=convention)
 	O.dt = bonded.time_step(safety)
-	O.trackEnergy = True
-	O.step()  # in the convention 'esys' bonds across gaps hold energy from the beginning
 	balance = ddem.EnergyBalance()
 	run_recording(round(duration / O.dt), max(1, round(4e-7 / O.dt)), balance.record)
 	return balance.largest, sample
@@ -56,7 +54,17 @@ def test_closes_while_bonds_break(material):
 	through = -parts["externalWork"]
 	assert parts["bondBroken"] > 0.05 * through and parts["friction"] > 0.01 * through
 	assert (parts["contactDamping"] > 1e-3 * through) == ("normalDamping" in material)
-	assert error < 1e-3
+	assert error < 1e-4  # the worst of these has 5e-5
+
+
+def test_closes_for_spheres_that_were_bonded_with_an_overlap():
+	spheres = irregular()
+	spheres.radii = spheres.radii * 1.002
+	spheres.bonds = spheres.neighbours(0)  # spheres that are not bonded would start under load, and so would walls
+	spheres.lower, spheres.upper = (spheres.centres - spheres.radii[:, None]).min(axis=0), (spheres.centres + spheres.radii[:, None]).max(axis=0)
+	error, sample = crush(spheres)
+	assert sample.broken_fraction > 0.3
+	assert error < 1e-4
 
 
 def test_error_is_of_second_order_in_the_time_step():
@@ -75,6 +83,25 @@ def test_esys_is_conservative_for_equal_radii():
 	error, sample = crush(regular(), "esys", cohesion=1e12)
 	assert sample.broken_fraction == 0 and O.energy["bondElastic"] > 0
 	assert error < 1e-5
+
+
+def test_esys_begins_to_shake_by_itself_where_radii_are_unequal():
+	"""Its stiffness is not symmetric: motion grows without work from outside, and as fast at half of the time step, so it is not the integrator's."""
+	growth = []
+	for convention, safety in (("esys", 0.5), ("esys", 0.25), ("consistent", 0.5)):
+		O.reset()
+		O.materials.append(BondedMat(label="rock", density=1e6, cohesion=1e15))
+		sample = bonded.append(irregular(), "rock", mass_law="cube")
+		O.engines = bonded.engines(convention=convention)
+		O.dt = bonded.time_step(safety)
+		random = np.random.default_rng(1)
+		for body in sample.ids.tolist():
+			O.bodies[body].state.vel = Vector3(*random.uniform(-1e-3, 1e-3, 3))
+		kinetic = []
+		run_recording(round(1.6e-3 / O.dt), round(1e-5 / O.dt), lambda: kinetic.append(utils.kineticEnergy()))
+		growth.append(np.mean(kinetic[-20:]) / np.mean(kinetic[20:40]))
+	assert growth[0] > 3 and growth[1] == pytest.approx(growth[0], rel=0.3)
+	assert growth[2] == pytest.approx(1, abs=0.1)
 
 
 def test_esys_is_not_conservative_for_unequal_radii():

@@ -1,13 +1,13 @@
 # GPL v2 or later, see LICENSE.
 # BondedInteractionLoop, which computes bonds all together, does what the functors do one by one in an InteractionLoop.
-import os
+import time
 
 import numpy as np
 import pytest
 
 from yade import (
 	BondedInteractionLoop, BondedMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
-	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, Vector3, utils)
+	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, SumIntrForcesCb, Vector3, utils)
 from yade.ddem import bonded, packing
 
 from recording import run_recording
@@ -162,6 +162,88 @@ def test_stops_at_the_bond_that_is_not_a_number():
 	O.bodies[body].state.pos = Vector3(0, float("nan"), 0)
 	with pytest.raises(RuntimeError, match=rf"the bond of bodies #.* became infinite or not a number in step .*, t = .* s; .* check O.dt"):
 		O.step()
+
+
+def test_stops_at_what_is_not_a_number_also_where_bonds_are_broken():
+	sample, _ = specimen()
+	one, two = sample.bonds[5].tolist()
+	O.bodies[two].state.pos += Vector3(1e-3, 0, 0)
+	O.step()
+	assert bonded.law().brokenCount() > 0
+	body = int(sample.broken["id1"][0])
+	O.bodies[body].state.pos = Vector3(0, float("nan"), 0)
+	with pytest.raises(RuntimeError, match="became infinite or not a number"):
+		O.step()
+
+
+def test_may_be_asked_for_bonds_at_any_time():
+	sample, _ = specimen()
+	O.run(3000)
+	counts = []
+	while O.running and len(counts) < 300:
+		counts.append((len(sample.bonds), bonded.law().brokenCount(), len(sample.broken)))
+	O.pause()
+	O.wait()
+	held, broken, records = np.array(counts).T
+	assert len(counts) > 3 and (np.diff(held) <= 0).all() and (np.diff(broken) >= 0).all() and (records >= broken).all()
+	assert len(sample.bonds) + bonded.law().brokenCount() == sample.initial_bonds
+
+
+def test_survives_a_bond_erased_after_a_pause():
+	sample, _ = specimen(cohesion=1e15)
+	for _ in range(20):
+		O.run(100_000)
+		time.sleep(0.02)
+		O.pause()
+		time.sleep(0.05)
+		before = len(bonded.law().bonds()["ids"])
+		O.interactions.erase(*(int(i) for i in sample.bonds[3]))
+		assert len(bonded.law().bonds()["ids"]) == before - 1
+	O.step()
+	assert len(sample.bonds) == sample.initial_bonds - 20
+
+
+def test_takes_up_stiffnesses_changed_by_hand():
+	O.materials.append(BondedMat(label="rock"))
+	ids = O.bodies.append([utils.sphere((2e-3 * i, 0, 0), 1e-3, material="rock") for i in range(2)])
+	Ip2_BondedMat_BondedMat_BondedPhys().bond([tuple(ids)])
+	O.engines = bonded.engines()
+	O.engines[-1].mask = 2
+	O.dt = 1e-9
+	O.bodies[1].state.pos += Vector3(1e-7, 0, 0)
+	O.step()
+	force = O.forces.f(0)[0]
+	O.interactions[0, 1].phys.kn *= 2
+	O.step()
+	assert O.forces.f(0)[0] == pytest.approx(2 * force)
+
+
+@pytest.mark.parametrize("change", ["callbacks", "sorted"])
+def test_leaves_bonds_to_the_functors_where_the_base_class_must_be_asked(change):
+	sample, _ = specimen(cohesion=1e15)
+	O.run(50, True)
+	loop = O.engines[2]
+	if change == "callbacks":
+		loop.callbacks = [SumIntrForcesCb()]
+	else:
+		loop.loopOnSortedInteractions = True
+	O.run(50, True)
+	mixed = sample.positions
+	sample, _ = specimen(cohesion=1e15)
+	O.run(100, True)
+	assert mixed == pytest.approx(sample.positions, abs=1e-14)
+
+
+def test_keeps_samples_apart():
+	O.materials.append(BondedMat(label="rock"))
+	samples = [bonded.append(packing.Packing([(0, y, 0), (2e-3, y, 0), (4e-3, y, 0)], [1e-3] * 3), "rock") for y in (0, 1)]
+	O.engines = bonded.engines()
+	O.engines[-1].mask = 2
+	O.dt = 1e-9
+	O.bodies[5].state.pos += Vector3(1e-3, 0, 0)
+	O.step()
+	assert [s.broken_fraction for s in samples] == [0, 0.5]
+	assert [len(s.bonds) for s in samples] == [2, 1] and [len(s.broken) for s in samples] == [0, 1]
 
 
 @pytest.mark.parametrize("convention", CONVENTIONS)

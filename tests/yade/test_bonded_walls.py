@@ -78,6 +78,37 @@ def test_ends_contract_unless_walls_hold_them():
 		assert side == pytest.approx(math.pi * RADIUS * 200e9 * 1e-7 if held else 0, rel=1e-9)
 
 
+def test_time_step_counts_the_walls_springs():
+	sample, _ = column(shear_stiffness=1e13)
+	stiff = bonded.critical_time_step()
+	O.dt = 0.9 * stiff
+	O.bodies[int(sample.ids[0])].state.pos += Vector3(1e-9, 0, 0)
+	O.run(500, True)
+	assert np.abs(sample.velocities).max() < 1
+	O.dt = 3 * stiff
+	O.run(500, True)
+	assert not np.abs(sample.velocities).max() < 1
+	column()
+	assert stiff < 0.3 * bonded.critical_time_step()
+
+
+@pytest.mark.parametrize("bonded_walls", [True, False])
+def test_yade_s_own_functions_understand_walls(bonded_walls):
+	"""utils.getStress and others take the physics of every contact for NormShearPhys."""
+	O.materials.append(BondedMat(label="rock"))
+	spheres = packing.Packing([(0, RADIUS, 0), (0, 3 * RADIUS, 0)], [RADIUS] * 2, lower=(-RADIUS, 0, -RADIUS), upper=(RADIUS, 4 * RADIUS, RADIUS))
+	sample = bonded.append(spheres, "rock")
+	platens = bonded.platens(sample, velocity=0.01, bonded=bonded_walls)
+	O.engines = bonded.engines(platens, viscosity=1e5)
+	O.dt = bonded.time_step(0.5)
+	O.run(2000, True)
+	volume = 16 * RADIUS**3
+	stress = utils.getStress(volume)
+	assert stress[1, 1] == pytest.approx(-platens.force_top * 4 * RADIUS / volume, rel=0.05)
+	assert abs(stress[0, 0]) < 1e-6 * abs(stress[1, 1])
+	assert 0 <= utils.unbalancedForce() < 1
+
+
 def test_only_spheres_at_the_wall_are_bonded_to_it():
 	sample, platens = column()
 	held = {i.id2 for i in O.interactions if hasattr(i.phys, "wallStiffness") and i.phys.bonded}

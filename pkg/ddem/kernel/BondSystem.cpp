@@ -31,6 +31,8 @@ void BondSystem::clear() { *this = BondSystem(); }
 
 void BondSystem::add(std::int32_t firstParticle, std::int32_t secondParticle, const Bond& bond, const MohrCoulomb& strength)
 {
+	if (first.size() != count) throw std::logic_error("BondSystem: bonds are added before it is assembled");
+	count++;
 	first.push_back(firstParticle);
 	second.push_back(secondParticle);
 	const double values[ConstantCount]
@@ -44,7 +46,8 @@ void BondSystem::add(std::int32_t firstParticle, std::int32_t secondParticle, co
 
 void BondSystem::assemble(std::size_t particleCount)
 {
-	const std::size_t count = size();
+	first.resize(count);
+	second.resize(count);
 	collectStart.assign(particleCount + 1, 0);
 	for (const auto* list : { &first, &second })
 		for (const std::int32_t p : *list) {
@@ -60,16 +63,16 @@ void BondSystem::assemble(std::size_t particleCount)
 		collectRow[next[std::size_t(second[j])]++] = std::int32_t(2 * j + 1);
 	}
 
-	// What SIMD batches read beyond the end: the last bond again, whose results nobody collects.
+	// What SIMD batches read beyond the end: the last bond again, without strength limit; nobody collects its results.
 	const std::size_t length = padded(count);
-	paddedFirst              = first;
-	paddedSecond             = second;
-	for (auto* list : { &paddedFirst, &paddedSecond })
+	for (auto* list : { &first, &second })
 		list->resize(length, count ? list->back() : 0);
 	for (auto& list : constants) {
 		list.resize(count);
 		list.resize(length, count ? list.back() : 0.);
 	}
+	for (const Constant k : { Cohesion, TensionLimit })
+		std::fill(constants[k].begin() + std::ptrdiff_t(count), constants[k].end(), std::numeric_limits<double>::infinity());
 	rows.assign(length, Row {});
 	pose.assign(8 * particleCount, 0.);
 	load.assign(6 * particleCount, 0.);
@@ -78,8 +81,7 @@ void BondSystem::assemble(std::size_t particleCount)
 double BondSystem::step(BondConvention convention, bool energy, std::vector<std::int32_t>& overloaded)
 {
 	overloaded.clear();
-	const std::size_t count = size();
-	BondArrays        arrays { paddedFirst.data(), paddedSecond.data(), pose.data(), {}, reinterpret_cast<double*>(rows.data()) };
+	BondArrays        arrays { first.data(), second.data(), pose.data(), {}, reinterpret_cast<double*>(rows.data()) };
 	for (std::size_t k = 0; k < ConstantCount; k++)
 		arrays.constant[k] = constants[k].data();
 	const BondLoop    loop   = selectBondLoop(convention);

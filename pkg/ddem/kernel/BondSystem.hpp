@@ -43,13 +43,16 @@ public:
 		double              energy;
 	};
 
+	/// Constants of every bond, a list each.
+	enum Constant { Normal, Shear, Bending, Torsion, Length, Radius1, Radius2, Frame1, Frame2 = Frame1 + 4, Cohesion = Frame2 + 4, Friction, TensionLimit, ConstantCount };
+
 	void clear();
 	/// \param first,second places of the particles in \ref pose
 	void add(std::int32_t first, std::int32_t second, const Bond& bond, const MohrCoulomb& strength);
 	/// To be called once all bonds have been added. \throws std::logic_error if a bond names a particle that does not exist
 	void assemble(std::size_t particles);
 
-	std::size_t size() const { return first.size(); }
+	std::size_t size() const { return count; }
 	std::size_t particles() const { return collectStart.size() - 1; }
 
 	/// Position x, y, z and orientation w, x, y, z of every particle, to be set before each step; the fourth of eight numbers is not used.
@@ -68,21 +71,19 @@ public:
 	void remove(std::size_t bond);
 
 	const Row&   row(std::size_t bond) const { return rows[bond]; }
+	double       constant(Constant which, std::size_t bond) const { return constants[which][bond]; }
 	std::int32_t firstOf(std::size_t bond) const { return first[bond]; }
 	std::int32_t secondOf(std::size_t bond) const { return second[bond]; }
-
-	/// Constants of every bond, a list each.
-	enum Constant { Normal, Shear, Bending, Torsion, Length, Radius1, Radius2, Frame1, Frame2 = Frame1 + 4, Cohesion = Frame2 + 4, Friction, TensionLimit, ConstantCount };
 
 private:
 	void collect(std::size_t particle);
 
-	std::vector<std::int32_t>                      first, second;
+	std::size_t                                    count = 0;
+	std::vector<std::int32_t>                      first, second; ///< like all constants padded to whole SIMD batches once assembled
 	std::array<std::vector<double>, ConstantCount> constants;
 	std::vector<Row>                               rows;
 	std::vector<std::size_t>                       collectStart { 0 };
 	std::vector<std::int32_t>                      collectRow; ///< 2 · bond + (0: as first, 1: as second particle)
-	std::vector<std::int32_t>                      paddedFirst, paddedSecond;
 };
 
 } // namespace yade::ddem

@@ -47,7 +47,8 @@ esysBondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, con
 	const Number              along = dot(image, n);
 	const SpaceVector<Number> theta = lengthenedToAngle(image - along * n, along);
 	const Number              sign  = select(turn.w < Number(0.), Number(-1.), Number(1.));
-	const Number              psi   = 2. * atan2(sign * dot(v, n), sign * turn.w);
+	// half a turn about an axis across n has no twist, and in lanes atan2(0, 0) is not a number
+	const Number              psi   = 2. * atan2(sign * dot(v, n), select(turn.w * turn.w + dot(v, n) * dot(v, n) > Number(0.), sign * turn.w, Number(1.)));
 
 	const BondStiffnessOf<Number>& k      = bond.stiffness;
 	const Number                   normal = k.normal * (L - r0);
