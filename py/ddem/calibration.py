@@ -40,12 +40,9 @@ _NOTHING = 0.05  # elasticities below it do not count
 _FAR = 2.0  # two targets answer alike if their misses can only be brought together by a larger change of the parameters' logarithms
 _NEAR = 0.01  # a parameter this close to a bound, in its logarithm, has hit it
 _SMALLEST_STEP = 2e-3  # a step of parameters below it leads nowhere, far below what finite differences see
-_RADIUS = 0.7  # of the first steps by models of the response: no parameter changes by more than a factor of two
-_CAUTION = 0.3  # a parameter changes by a factor of e only for more than this part of a tolerance
-_WIDER = 3  # times the usual step of finite differences is taken before the search gives up
-_PATIENCE = 6  # so many steps in a row that bring it less than a tenth closer end the search
+_RADIUS = 0.7  # of steps by the response surface: no parameter changes by more than a factor of two; less where a point failed
+_PATIENCE = 8  # so many steps in a row that bring it less than a tenth closer end the search
 _PASSES = 3  # a model is made anew around the point to which it leads
-_SURPRISE = 0.06  # a miss that the model did not foresee by more than this part halves the reach of the next step
 _SCATTER = 0.01  # of measures between neighbouring points, expected when points are weighted
 _CURVATURE = 0.5  # of measures over parameters, expected likewise
 _SPARE = 2  # points more than a plane needs, before their scatter about it says something
@@ -133,7 +130,7 @@ class Calibration:
 			raise ValueError(f"step = {step} of finite differences must be a part of the parameters, between 0 and 1")
 		self.parameters, self.targets, self.bench, self.step, self.sensitivities = list(parameters), list(targets), bench, step, sensitivities
 		self.tell = tell or (lambda step: None)
-		self.steps, self.best, self._around = [], None, None  #: _around: where finite differences were taken last
+		self.steps, self.best, self._differed = [], None, False  # _differed: whether finite differences were taken
 		self._lower, self._upper = (np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper"))
 
 	def run(self):
@@ -147,12 +144,12 @@ class Calibration:
 			pass
 		except (OutOfBudget, EvaluationError) as error:
 			reached, why = False, [str(error)]
-		if reached and self.sensitivities and self._around is None:
+		if reached and self.sensitivities and not self._differed:
 			try:
 				self._differences(self._logs(self.best.values), stop=False)
 			except (OutOfBudget, EvaluationError) as error:
 				why.append(f"sensitivities could not be measured: {error}")
-		elasticities, errors = (None, None) if self._around is None else self.response(self._logs(self.best.values))[1:]
+		elasticities, errors = self.response(self._logs(self.best.values))[1:] if self._differed and self._spanned() else (None, None)
 		return Outcome(
 			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets, time.perf_counter() - begin,
 			{} if self.best is None else self._bounds_hit(self._logs(self.best.values))
@@ -180,39 +177,32 @@ class Calibration:
 		return x
 
 	def _respond(self, x):
-		"""Steps by linear models of the response, from log-parameters *x*, until nothing more is gained."""
+		"""Steps by the response surface, from log-parameters *x*, until nothing more is gained."""
 		self._differences(x)
 		tolerances = np.array([target.tolerance for target in self.targets])
-		radius, idle, wide = _RADIUS, 0, False
-		while True:
-			x, (_, distance) = self._logs(self.best.values), self._rank(self.best)
-			there, expected = self._aim(x, radius, tolerances)
+		radius, idle = _RADIUS, 0
+		while idle < _PATIENCE:
+			distance = self._rank(self.best)[1]
+			there, expected = self._aim(self._logs(self.best.values), radius, tolerances)
 			near = min(np.abs(self._logs(step.point.values) - there).max() for step in self.steps) < _SMALLEST_STEP
-			hopeless = near and np.abs(expected / tolerances).max() > 1  # the model leads nowhere new, and not to the targets either
+			if near and np.abs(expected / tolerances).max() > 1:
+				return  # it leads nowhere new, and not to the targets either
 			known = len(self.steps)
-			if not hopeless and idle < _PATIENCE:
-				point = self._look([there], "search")[0]
-			if len(self.steps) == known:  # no new point: another look from farther off, once
-				if wide:
-					return
-				self._differences(x, _WIDER)
-				wide, idle = True, 0
-				continue
-			size, surprise = np.abs(there - x).max(), math.inf if point.error else np.abs(self._misses(point) - expected).max()
-			radius = 0.5 * size if surprise > _SURPRISE else max(radius, min(2 * size, 1.0))
+			point = self._look([there], "search")[0]
+			if len(self.steps) == known:
+				return
+			if point.error:
+				radius *= 0.5
 			idle = 0 if self._rank(self.best)[1] < 0.9 * distance else idle + 1
-			moved = np.abs(self._logs(self.best.values) - self._logs(self._around)).max()
-			if idle == 2 and moved > math.log1p(self.step):
-				self._differences(self._logs(self.best.values))
 
 	def _aim(self, x, radius, tolerances):
 		"""Log-parameters within *radius* of *x* and the bounds where the response, modelled around that place, comes closest to the targets; and its misses."""
 		there = x
 		for _ in range(_PASSES):
 			misses, slopes, _ = self.response(there)
-			matrix = np.vstack([slopes / tolerances[:, None], _CAUTION * np.eye(len(x))])
-			wanted = np.append((slopes @ (there - x) - misses) / tolerances, np.zeros(len(x)))
-			step = lsq_linear(matrix, wanted, bounds=(np.maximum(self._lower - x, -radius), np.minimum(self._upper - x, radius))).x
+			wanted = (slopes @ (there - x) - misses) / tolerances
+			bounds = np.maximum(self._lower - x, -radius), np.minimum(self._upper - x, radius)
+			step = lsq_linear(slopes / tolerances[:, None], wanted, bounds=bounds).x
 			there, expected = x + step, misses + slopes @ (x + step - there)
 		return there, expected
 
@@ -235,13 +225,19 @@ class Calibration:
 			error = np.sqrt(np.outer(np.diag(np.linalg.pinv(matrix.T @ matrix)), variance))
 		return plane[0], plane[1:].T + 0.0, error[1:].T  # no negative zeros
 
-	def _differences(self, x, wider=1, stop=True):
+	def _spanned(self):
+		"""Whether points differ in every parameter, by more than rounding, so that a plane through them has all slopes."""
+		logs = np.array([self._logs(step.point.values) for step in self.steps if not step.point.error])
+		return np.linalg.matrix_rank(logs - logs.mean(axis=0), tol=1e-3) == len(self.parameters)
+
+	def _differences(self, x, stop=True):
 		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time, to the other side where a bound is near or
 		a point fails."""
 		base = self._look([x], "search", stop)[0]
-		x, width = self._logs(base.values), wider * math.log1p(self.step)
+		x, width = self._logs(base.values), math.log1p(self.step)
 		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
 		moved = [x + np.eye(len(x))[k] * signs[k] * width for k in range(len(x))]
+		self._differed = True
 		points = self._look(moved, "sensitivity", stop)
 		for k in [k for k, point in enumerate(points) if point.error]:
 			points[k] = self._look([x - np.eye(len(x))[k] * signs[k] * width], "sensitivity", stop, [k])[0]
@@ -249,8 +245,6 @@ class Calibration:
 				raise EvaluationError(
 					f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}"
 				)
-		self._around = base.values
-
 	# --- points
 	def _look(self, logs, purpose, stop=True, columns=None):
 		"""Measure points given as log-parameters; raises _Reached at one that meets all targets, unless told not to *stop*."""

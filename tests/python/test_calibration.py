@@ -85,6 +85,48 @@ def test_errors_of_elasticities_are_those_that_scatter_makes():
 	assert np.sqrt(np.mean(np.square(errors), axis=0)) == pytest.approx(np.std(found, axis=0), rel=0.15)
 
 
+def test_points_far_away_count_less():
+	"""y = x + x² has the slope 1 at 0; a plane through points of equal weight would take it from those at 0.5 and 1."""
+	search = Calibration((COHESION, ), TARGETS[1:], None)
+	for number, x in enumerate([-0.05, 0, 0.05, 0.5, 1.0]):
+		search.steps.append(Step(number, "search", Point({"C": 50e6 * math.exp(x)}, {"ucs": 60e6 * math.exp(x + x**2)}, {})))
+	misses, slopes, _ = search.response(np.log([50e6]))
+	assert misses == pytest.approx(0, abs=0.005)
+	assert slopes == pytest.approx(1, abs=0.25)
+
+
+def test_curved_response_is_followed_in_few_steps():
+	"""Both strengths of a prism of spheres over the friction angle of its bonds, a parabola through what was measured at 15, 45 and 70 degrees."""
+	angles = np.log(np.array([15, 45, 70]) / 45)
+	ucs, tensile = (np.polyfit(angles, np.log(values), 2) for values in ([92.1e6, 60.7e6, 31.2e6], [45.9e6, 21.6e6, 9.8e6]))
+
+	def spheres(values, case):
+		angle, strong = math.log(values["phi"] / 0.785), values["C"] / 42e6
+		return {"young": 1.3 * values["E"], "ucs": strong * math.exp(np.polyval(ucs, angle)), "tensile": strong * math.exp(np.polyval(tensile, angle))}
+
+	for wanted in (26e6, 24e6, 19e6):
+		targets = [*TARGETS, Target("tensile", wanted, 0.02)]
+		outcome, bench = calibrate(spheres, (STIFFNESS, COHESION, ANGLE), targets)
+		assert_met(outcome, targets)
+		assert bench.ran <= 12
+
+
+def test_finite_difference_that_meets_the_targets_ends_the_search():
+	start = Parameter("C", 60e6 / 0.8 / 1.08, 5e6, 500e6)  # no law; 8 % above is the solution
+	outcome, bench = calibrate(proportional, (Parameter("E", 40e9 / 0.6, 5e9, 500e9), start))
+	assert_met(outcome)
+	assert (bench.ran, outcome.steps[-1].purpose) == (3, "sensitivity")
+	assert outcome.elasticities == pytest.approx(np.eye(2), abs=1e-4)
+
+
+def test_sensitivities_at_a_bound_look_to_the_other_side():
+	outcome, _ = calibrate(proportional, (STIFFNESS, Parameter("C", 70e6, 5e6, 75.5e6, {"ucs": 1})))
+	assert_met(outcome)
+	tried = [step.point.values["C"] for step in outcome.steps if step.parameter == "C"]
+	assert tried == [pytest.approx(75e6 / 1.08, rel=1e-4)]
+	assert outcome.elasticities == pytest.approx(np.eye(2), abs=1e-4)
+
+
 def test_laws_are_no_necessity():
 	plain = [Parameter(p.name, p.start, p.lower, p.upper) for p in (STIFFNESS, COHESION)]
 	outcome, bench = calibrate(power_laws, plain)
@@ -209,6 +251,7 @@ def test_failure_on_both_sides_is_said():
 	outcome, _ = calibrate(island)
 	assert not outcome.reached
 	assert "both sides of C" in outcome.why[0] and "no specimen" in outcome.why[0]
+	assert outcome.elasticities is None
 	assert outcome.best.measured["ucs"] == 30e6
 
 

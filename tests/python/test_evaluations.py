@@ -177,6 +177,7 @@ def test_interruption_keeps_what_was_finished_and_ends_the_rest(tmp_path):
 	with Bench(Model(), path=tmp_path / "e", jobs=3) as bench:
 		with pytest.raises(KeyboardInterrupt):
 			bench.measure(points(1, 2, 3))
+	assert stopped.is_set()
 	assert [record["parameters"]["x"] for record in lines(tmp_path / "e")] == [1.0]
 
 
