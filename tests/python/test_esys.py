@@ -88,7 +88,7 @@ def leave_output(folder):
 	(folder / "position.dat").write_text("".join(f"0 {0.1 * k} 0  0 {20 - 0.1 * k} 0  \n" for k in rows))
 	(folder / "force.dat").write_text("".join(f"0.5 {FORCES[k]} 0  0 {-FORCES[k] - 1} 0.5  \n" for k in rows))  # the top wall pushes down, by 1 N more
 	(folder / "bonds.dat").write_text("".join(f"{count:.10e}\n" for count in BONDS))
-	(folder / "finished.json").write_text('{"seconds": 0.000057, "steps": 19}')
+	(folder / "finished.json").write_text('{"pieces": [1.2e-5, 1.5e-5, 1.5e-5, 1.5e-5]}')
 
 
 @pytest.fixture
@@ -165,7 +165,7 @@ def test_incomplete_output_is_refused(setup, tmp_path):
 
 def record_of(setup, program, stress, broken, seconds=1.0, interval=5e-8):
 	"""A record with a strain that grows by 1e-4 a row; stress in MPa."""
-	record = esys.Record(program, setup, seconds=seconds)
+	record = esys.Record(program, setup, pieces=[0.25 * seconds, 0.75 * seconds])
 	for row, (value, count) in enumerate(zip(stress, broken)):
 		record.series.append(time=row * interval, strain=1e-4 * row, stress=1e6 * value, force_top=100 * value, force_bottom=100 * value, broken=count)
 	return record
@@ -179,6 +179,14 @@ def pair(setup):
 	other[[5, 8, 10]] += [1e-4, 0.01, 0.1]
 	broken = np.where(np.arange(13) > 9, 1, 0)
 	return record_of(setup, "first", stress, broken, 2.0), record_of(setup, "second", other, broken, 0.5)
+
+
+def test_repeats_count_where_they_were_fastest(pair):
+	first, second = pair
+	first.pieces, second.pieces = [1.0, 5.0, 2.0], [3.0, 1.5, 2.5]
+	best = esys.undisturbed([first, second])
+	assert best.pieces == [1.0, 1.5, 2.0] and best.seconds == 4.5
+	assert (best.program, best.series) == ("first", first.series)
 
 
 def test_figures(pair):

@@ -94,7 +94,7 @@ def test_report(job, options, capsys):
 	chosen = options(*SAMPLE_OPTIONS, "--steps", "400", "--every", "100")
 	setup = job.read_setup(chosen)
 	ours = job.run_here(setup, chosen)
-	theirs = ddem.esys.Record("ESyS-Particle", setup, ours.series, seconds=2 * ours.seconds)
+	theirs = ddem.esys.Record("ESyS-Particle", setup, ours.series, pieces=[2 * piece for piece in ours.pieces])
 	job.report(theirs, ours, chosen)
 	assert "0.50 of the time of ESyS-Particle" in capsys.readouterr().out
 	with open(os.path.join(chosen.out, "summary.json")) as file:

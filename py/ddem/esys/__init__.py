@@ -16,7 +16,7 @@ import json
 import os
 import shutil
 import subprocess
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -57,8 +57,8 @@ class Setup:
 			raise ValueError("this packing has no bonds; set packing.bonds = packing.neighbours(gap)")
 		if self.mass_law not in ("cube", "solid"):
 			raise ValueError(f"mass_law = '{self.mass_law}' must be cube or solid")
-		if not (self.dt > 0 and self.steps >= 1 and self.every >= 1 and self.ramp_steps >= 0):
-			raise ValueError(f"dt = {self.dt} s, steps = {self.steps} and every = {self.every} must be positive, ramp_steps = {self.ramp_steps} not negative")
+		if not (self.dt > 0 and self.steps >= 2 and self.every >= 1 and self.ramp_steps >= 0):
+			raise ValueError(f"dt = {self.dt} s, steps = {self.steps} (at least 2) and every = {self.every} must be positive, ramp_steps = {self.ramp_steps} not negative")
 		if self.steps % self.every:
 			raise ValueError(f"steps = {self.steps} must be a multiple of every = {self.every}, so that the last one is recorded")
 
@@ -74,8 +74,13 @@ class Record:
 	program: str
 	setup: Setup
 	series: Series = field(default_factory=lambda: Series(time="s", **UNITS))  # see UNITS; compression positive; broken counts bonds
-	seconds: float = 0.0  # wall time of all steps but the first, with recording [s]
+	pieces: list = field(default_factory=list)  # wall time from record to record without the first step, with recording [s]
 	threads: int = 1  # that calculate
+
+	@property
+	def seconds(self):
+		"""Wall time of all steps but the first [s]."""
+		return float(sum(self.pieces))
 
 	@property
 	def nanoseconds(self):
@@ -114,6 +119,11 @@ def run(setup, folder, workers=1, progress=lambda step: None):
 	if code != 0 or not os.path.exists(os.path.join(folder, "finished.json")):
 		raise RuntimeError(f"ESyS-Particle has failed (exit code {code}); its last words in {folder}:\n" + "\n".join(last))
 	return read_output(setup, folder, workers)
+
+
+def undisturbed(records):
+	"""One record of several runs of the same test, which only differ in time: of each piece the shortest, so that what else the machine does counts little."""
+	return replace(records[0], pieces=np.min([record.pieces for record in records], axis=0).tolist())
 
 
 def version():
@@ -173,10 +183,10 @@ def read_output(setup, folder, workers=1):
 	rows = setup.steps // setup.every + 1
 	position, force, bonds = (_table(os.path.join(folder, name), rows, columns) for name, columns in (("position.dat", 6), ("force.dat", 6), ("bonds.dat", 1)))
 	with open(os.path.join(folder, "finished.json")) as file:
-		seconds = json.load(file)["seconds"]
+		pieces = json.load(file)["pieces"]
 	# Columns 1 and 4 are along y, of the bottom and of the top wall. Forces are those of the walls on the spheres.
 	distance, bottom, top = position[:, 4] - position[:, 1], force[:, 1], -force[:, 4]
-	record = Record("ESyS-Particle", setup, seconds=seconds, threads=workers)
+	record = Record("ESyS-Particle", setup, pieces=pieces, threads=workers)
 	columns = {
 		"time": setup.dt * setup.every * np.arange(rows),
 		"strain": 1 - distance / distance[0],
