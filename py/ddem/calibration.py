@@ -115,7 +115,7 @@ class Calibration:
 	:param targets: list of :class:`Target`, named after the measures of the bench
 	:param bench: :class:`evaluations.Bench`
 	:param step: relative step of finite differences [-]; above the noise of the model
-	:param sensitivities: measure elasticities in the end where the search needed none
+	:param sensitivities: measure elasticities in the end where the search did not do so nearby
 	:param tell: called with every :class:`Step`
 	"""
 
@@ -130,7 +130,7 @@ class Calibration:
 			raise ValueError(f"step = {step} of finite differences must be a part of the parameters, between 0 and 1")
 		self.parameters, self.targets, self.bench, self.step, self.sensitivities = list(parameters), list(targets), bench, step, sensitivities
 		self.tell = tell or (lambda step: None)
-		self.steps, self.best, self._differed = [], None, False  # _differed: whether finite differences were taken
+		self.steps, self.best, self._around = [], None, None  # _around: log-parameters where finite differences were taken last
 		self._lower, self._upper = (np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper"))
 
 	def run(self):
@@ -144,12 +144,12 @@ class Calibration:
 			pass
 		except (OutOfBudget, EvaluationError) as error:
 			reached, why = False, [str(error)]
-		if reached and self.sensitivities and not self._differed:
+		if reached and self.sensitivities and self._far_from_differences():
 			try:
 				self._differences(self._logs(self.best.values), stop=False)
 			except (OutOfBudget, EvaluationError) as error:
 				why.append(f"sensitivities could not be measured: {error}")
-		elasticities, errors = self.response(self._logs(self.best.values))[1:] if self._differed and self._spanned() else (None, None)
+		elasticities, errors = self.response(self._logs(self.best.values))[1:] if self._around is not None and self._spanned() else (None, None)
 		return Outcome(
 			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets, time.perf_counter() - begin,
 			{} if self.best is None else self._bounds_hit(self._logs(self.best.values))
@@ -225,6 +225,10 @@ class Calibration:
 			error = np.sqrt(np.outer(np.diag(np.linalg.pinv(matrix.T @ matrix)), variance))
 		return plane[0], plane[1:].T + 0.0, error[1:].T  # no negative zeros
 
+	def _far_from_differences(self):
+		"""Whether no finite differences were taken near the best point."""
+		return self._around is None or np.abs(self._logs(self.best.values) - self._around).max() > 1.5 * math.log1p(self.step)
+
 	def _spanned(self):
 		"""Whether points differ in every parameter, by more than rounding, so that a plane through them has all slopes."""
 		logs = np.array([self._logs(step.point.values) for step in self.steps if not step.point.error])
@@ -237,7 +241,7 @@ class Calibration:
 		x, width = self._logs(base.values), math.log1p(self.step)
 		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
 		moved = [x + np.eye(len(x))[k] * signs[k] * width for k in range(len(x))]
-		self._differed = True
+		self._around = x
 		points = self._look(moved, "sensitivity", stop)
 		for k in [k for k, point in enumerate(points) if point.error]:
 			points[k] = self._look([x - np.eye(len(x))[k] * signs[k] * width], "sensitivity", stop, [k])[0]

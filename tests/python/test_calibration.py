@@ -67,6 +67,14 @@ def test_elasticities_are_the_exponents():
 	assert bench.ran == 4
 
 
+def test_elasticities_are_those_at_the_point_found():
+	"""The exponent of C grows from 0.5 at the start to 1 at the solution, three times as far."""
+	curved = lambda v, _: {"young": 0.6 * v["E"], "ucs": 60e6 * math.exp(math.log(v["C"] / 60e6) + 0.23 * math.log(v["C"] / 60e6)**2)}
+	outcome, _ = calibrate(curved, (STIFFNESS, Parameter("C", 20e6, 5e6, 500e6)))
+	assert_met(outcome)
+	assert outcome.elasticities[1, 1] == pytest.approx(1, abs=0.06)
+
+
 def test_errors_of_elasticities_are_those_that_scatter_makes():
 	"""Of many samples of a plane with scatter, elasticities lie about the true ones as widely as their standard errors say."""
 	found, errors = [], []
