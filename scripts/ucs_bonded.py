@@ -17,9 +17,9 @@ Writes:   a table here, and into out/ucs_bonded: report.html with pictures, summ
      =============
         v ^                 SI units everywhere, but for files of particles, which have --length-unit.
 
-Expect:   690 spheres, 2190 bonds. Compression: 136 MPa and 112 GPa; a band of broken bonds crosses the sample, three in four of them broken in tension. In esys, with
-          spheres 92 times as heavy: 186 MPa, as half the bending moment means less tension, and inertia holds the fragments together. Tension: 51 MPa and 114 GPa; one
-          crack goes straight across. Another --seed changes strengths by a tenth or two.
+Expect:   690 spheres, 2190 bonds. Compression: 136 MPa and 112 GPa; a band of broken bonds crosses the sample, three in four of them broken in tension. In esys,
+          with spheres 92 times as heavy: 186 MPa, as half the bending moment means less tension, and inertia holds the fragments together. Tension: 51 MPa and
+          114 GPa; one crack goes straight across. Another --seed changes strengths by a tenth or two.
 """
 import argparse
 import math
@@ -283,7 +283,8 @@ def notes(options, platens, run, closing):
 	wave = run.extra["wave_speed_m_s"]
 	if wave:
 		said.append(
-			f"Rate. The sample has {parameter_tables.number(round(run.extra['sample_density_kg_m3']))} kg/m³ as a whole, so that a wave runs along it at about √(E/ρ) = {wave:.0f} m/s, "
+			f"Rate. The sample has {parameter_tables.number(round(run.extra['sample_density_kg_m3']))} kg/m³ as a whole, so that a wave runs along it at about "
+			f"√(E/ρ) = {wave:.0f} m/s, "
 			f"{parameter_tables.number(round(wave / options.velocity))} times as fast as a wall, and needs {1e6 * platens.height / wave:.1f} µs from end to end, in "
 			f"which the strain grows by {100 * closing / wave:.3f} %. Where the two wall forces differ, the test is not quasi-static."
 		)

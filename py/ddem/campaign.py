@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""A campaign: many runs of a script with different options, each in a YADE and a folder of its own, some at the same time. What is finished is not repeated.
+"""A campaign: many runs of a script with different options, each in a YADE and a folder of its own, some at the same time; what is finished is kept.
 
 ::
 

@@ -101,7 +101,8 @@ def test_interruption_ends_what_is_running(tmp_path, yade):
 	def press(*_):
 		raise KeyboardInterrupt
 
-	running = campaign(tmp_path, yade("case $2 in 1) echo $$ > $out/pid; exec sleep 60;; esac; while ! test -e $out/../seed1/pid; do sleep 0.01; done"), jobs=2, report=press)
+	program = yade("case $2 in 1) echo $$ > $out/pid; exec sleep 60;; esac; while ! test -e $out/../seed1/pid; do sleep 0.01; done")
+	running = campaign(tmp_path, program, jobs=2, report=press)
 	with pytest.raises(KeyboardInterrupt):
 		running.run()
 	assert not os.path.exists(f"/proc/{(tmp_path / 'runs' / 'seed1' / 'pid').read_text().strip()}")
