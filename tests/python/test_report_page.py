@@ -7,7 +7,7 @@ import struct
 
 import numpy as np
 import pytest
-from ddem import mesh, packing
+from ddem import broken_bonds, mesh, packing
 from ddem.report import Report
 from ddem.runs import Run, cost_ratios
 from ddem.series import Series
@@ -57,6 +57,13 @@ def rigid_run():
 @pytest.fixture
 def runs():
 	return [rigid_run(), deformable_run()]
+
+
+def broken(count):
+	"""So many broken bonds, every third in shear, evenly over the 0.4 ms of the test."""
+	records = np.zeros(count, broken_bonds.DTYPE)
+	records["time"], records["mode"] = np.linspace(0, 4e-4, count), np.where(np.arange(count) % 3, "tension", "shear")
+	return records
 
 
 def report(runs, folder, **options):
@@ -124,6 +131,32 @@ def test_one_model_alone(runs, tmp_path, which):
 	assert page.count("data:image/png;base64,") == 8
 	assert runs[1 - which].title not in page
 	assert made.summary()["cost_ratio_deformable_to_rigid"] == {}
+
+
+def test_broken_bonds_have_a_picture_and_a_file(runs, tmp_path):
+	rigid, deformable = runs
+	rigid.broken, rigid.extra = broken(90), {"bonds": 361, "broken_in_tension": 60, "broken_in_shear": 30}
+	made = report(runs, tmp_path / "both")
+	page = open(made.write(), encoding="utf-8").read()
+	assert page.count("data:image/png;base64,") == 9 and "rigid_broken_bonds.csv" in page
+	assert (broken_bonds.read(tmp_path / "both" / "rigid_broken_bonds.csv") == rigid.broken).all()
+	rows = {row[0]: row[2] for row in made.table_rows() if row}
+	assert rows["bonds broken in tension"] == ["60", "–"] and rows["bonds broken in shear"] == ["30", "–"]
+	made = report([deformable], tmp_path / "one")
+	made.write()
+	assert not {row[0] for row in made.table_rows() if row} & {"bonds at the start", "bonds broken in shear"}
+	assert not (tmp_path / "one" / "broken_bonds.png").exists()
+
+
+def test_tension_has_a_strength_of_its_own(runs, tmp_path):
+	run = runs[0]
+	run.test = "tension"
+	figures = run.summary()
+	assert (figures["test"], figures["ucs_MPa"], figures["tensile_MPa"]) == ("tension", None, pytest.approx(60))
+	made = report([run], tmp_path)
+	page = open(made.write(), encoding="utf-8").read()
+	assert "60.0 MPa in tension" in page and "moved apart" in page and "tension positive" in page
+	assert "tensile strength" in made.table() and "UCS" not in made.table()
 
 
 def test_without_pictures(runs, tmp_path):

@@ -35,6 +35,19 @@ def test_same_seed_same_packing():
 	assert len(first) != len(other) or not np.array_equal(first.centres, other.centres)
 
 
+def test_kept_packing_is_the_same_and_only_that(tmp_path, monkeypatch):
+	"""A packing comes back from its file with every digit; one with another parameter is another packing."""
+	asked = {"width": 6e-3, "height": 8e-3, "depth": 6e-3, "rmin": 1e-3, "rmax": 2e-3, "seed": 7, "fails": 50}
+	made = packing.prism(**asked, keep=tmp_path / "kept")
+	for name, value in (("width", 7e-3), ("height", 9e-3), ("depth", 7e-3), ("rmin", 0.9e-3), ("rmax", 1.9e-3), ("seed", 8), ("fails", 60)):
+		packing.prism(**{**asked, name: value}, keep=tmp_path / "kept")
+	assert len(list((tmp_path / "kept").iterdir())) == 8
+	monkeypatch.setattr(packing, "_pack", lambda *_: pytest.fail("it was made again"))
+	kept = packing.prism(**asked, keep=tmp_path / "kept")
+	assert np.array_equal(kept.centres, made.centres) and np.array_equal(kept.radii, made.radii)
+	assert np.array_equal(kept.lower, made.lower) and np.array_equal(kept.upper, made.upper) and kept.bonds is None
+
+
 def test_layer_is_flat_and_two_spheres_wide_deep():
 	layer = packing.layer(0.02, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
 	assert layer.flat
