@@ -20,12 +20,11 @@ Expect:   the centre moves off at the 0.83 m/s of a rigid block and trembles by 
 import argparse
 import os
 import sys
-import tempfile
 import time
 
 import numpy as np
 
-from yade.ddem import plots, vtk
+from yade.ddem import commandline, plots, vtk
 from yade.ddem.series import Series
 from yade.ddem.structures import impulse, impulse_figures
 
@@ -102,11 +101,7 @@ def read_options():
 		parser.error(f"argument --size: {options.size:g} m must be positive and at most half the width of {impulse.WIDTH:g} m")
 	if not options.until > 0 or not all(0 < instant <= options.until for instant in options.instants):
 		parser.error(f"argument --instants: all must lie between 0 and --until, {options.until:g} s")
-	try:
-		os.makedirs(options.out, exist_ok=True)
-		tempfile.TemporaryFile(dir=options.out).close()
-	except OSError as error:
-		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	commandline.require_writable(parser, "--out", options.out)
 	return options
 
 

@@ -25,12 +25,11 @@ Expect:   the wave of 125 MPa, ringing for the first microseconds, as the platen
 """
 import argparse
 import os
-import tempfile
 
 import numpy as np
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import commandline, plots, vtk
 from yade.ddem.structures import reinforced, reinforced_figures
 
 INSTANTS = (20e-6, 60e-6, 100e-6, 200e-6, 600e-6)  # of the damage maps [s]
@@ -149,11 +148,7 @@ def read_options():
 		for value in values:
 			if not low <= value <= high:
 				parser.error(f"argument {name}: {value:g} must lie between {low:g} and {high:g}")
-	try:
-		os.makedirs(options.out, exist_ok=True)
-		tempfile.TemporaryFile(dir=options.out).close()
-	except OSError as error:
-		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	commandline.require_writable(parser, "--out", options.out)
 	return options
 
 

@@ -16,12 +16,11 @@ Expect:   the elastic bar returns the pulse whole: Novikov's ½ ρ c Δu_fs give
 """
 import argparse
 import os
-import tempfile
 
 import numpy as np
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import commandline, plots, vtk
 from yade.ddem.series import Series
 from yade.ddem.structures import spall, spall_figures
 
@@ -75,11 +74,7 @@ def read_options():
 		parser.error(f"argument --size: {options.size:g} m is more than a twentieth of the bar, {options.length:g} m")
 	if spall.WAVE * options.duration > options.length:
 		parser.error(f"argument --duration: the pulse is {spall.WAVE * options.duration:.2g} m long, more than the bar of {options.length:g} m")
-	try:
-		os.makedirs(options.out, exist_ok=True)
-		tempfile.TemporaryFile(dir=options.out).close()
-	except OSError as error:
-		parser.error(f"argument --out: cannot write into {options.out}: {error.strerror}")
+	commandline.require_writable(parser, "--out", options.out)
 	return options
 
 
