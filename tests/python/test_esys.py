@@ -146,6 +146,18 @@ def test_run_that_ends_early_is_no_success(setup, tmp_path, programs):
 		esys.run(setup, tmp_path / "run")
 
 
+def test_interrupted_run_leaves_no_process(setup, tmp_path, programs):
+	programs("echo $$ > process; echo step 1; exec sleep 60")
+
+	def interrupt(step):
+		raise KeyboardInterrupt
+
+	with pytest.raises(KeyboardInterrupt):
+		esys.run(setup, tmp_path / "run", progress=interrupt)
+	with pytest.raises(ProcessLookupError):
+		os.kill(int((tmp_path / "run" / "process").read_text()), 0)
+
+
 def test_missing_program_is_named_with_the_way_out(setup, tmp_path, monkeypatch):
 	monkeypatch.setenv("PATH", str(tmp_path))
 	with pytest.raises(RuntimeError, match="apt-get install esys-particle"):
