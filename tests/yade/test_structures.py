@@ -1,0 +1,132 @@
+# GPL v2 or later, see LICENSE.
+"""Structures of the report and beyond: their loads, what they measure, and their scripts. What happens to them is checked by the verification cases."""
+import numpy as np
+import pytest
+import script_modules
+
+from yade import ConcreteDamageMat, O, ddem
+from yade.ddem.series import Series
+from yade.ddem.structures import beam, confined, impulse, reinforced, spall
+
+# --- loads
+
+
+@pytest.mark.parametrize("patch", [0.4, 0.1, 0.0333])
+def test_impulse_on_nodes_has_the_force_and_the_place_of_its_pressure(patch):
+	push = impulse.Impulse(patch=patch)
+	mesh = ddem.mesh.rectangle(impulse.WIDTH, impulse.HEIGHT, 0.01)
+	nodes, shares = push.shares(mesh)
+	assert shares.sum() == pytest.approx(patch)
+	assert shares @ mesh.nodes[nodes, 1] == pytest.approx(patch * impulse.HEIGHT / 2)  # in the middle of the side
+	assert (mesh.nodes[nodes, 0] == 0).all()
+
+
+@pytest.mark.parametrize("shape, mean", [("sine-squared", 1 / 2), ("half-sine", 2 / np.pi), ("triangle", 1 / 2), ("rectangle", 1)])
+def test_impulse_brings_in_its_momentum(shape, mean):
+	push = impulse.Impulse(shape, pressure=3e6, duration=20e-6)
+	assert push.momentum == pytest.approx(mean * 3e6 * 20e-6 * impulse.HEIGHT, rel=1e-4)  # integrals of the shapes
+	assert push.at(1.01 * push.duration) == 0
+
+
+def test_sides_are_pressed_evenly():
+	O.materials.append(ConcreteDamageMat(label="concrete"))
+	block = ddem.append(ddem.mesh.rectangle(confined.WIDTH, confined.HEIGHT, 0.02), "concrete", thickness=0.5)
+	total = {1: 0.0, -1: 0.0}
+	for engine in confined._pressing(block, 7e6):
+		total[int(engine.direction[0])] += engine.magnitudes[-1] * len(engine.ids)
+		assert engine.magnitudes[0] == 0
+	assert total == {1: pytest.approx(7e6 * confined.HEIGHT * 0.5), -1: pytest.approx(7e6 * confined.HEIGHT * 0.5)}
+
+
+# --- measures
+
+
+def test_pullback_ends_at_the_first_minimum():
+	surface = np.array([0, 4, 10, 8, 5, 6, 7, 3, 1.0])
+	zeros = np.zeros((9, 2))
+	history = spall.History(np.arange(9.0), np.arange(2.0), zeros, zeros, surface, zeros, 0)
+	assert history.pullback == ((10, 5), (2, 4))
+	assert history.spall_stress == pytest.approx(0.5 * 2400 * 5190.8 * 5, rel=1e-4)  # ½ ρ c Δu with c = √((B + 4μ/3)/ρ) of Table 1
+
+
+def test_crack_is_where_the_damage_is():
+	mesh = beam.mesh(0.01)
+	x, y = mesh.centroids.T
+	line = beam.LENGTH / 2 + 0.3 * (y - beam.NOTCH)
+	damage = np.repeat(((np.abs(x - line) < 0.01) & (y > beam.NOTCH) & (y < 0.08)).astype(float)[:, None], 3, axis=1)
+	none = np.zeros(2)
+	heights, places = beam.History(mesh, none, none, none, none, mesh.nodes, damage, 0).crack()
+	assert heights.max() < 0.085 and len(heights) >= 6
+	assert np.abs(places - (beam.LENGTH / 2 + 0.3 * (heights - beam.NOTCH))).max() < 0.01  # within a triangle
+
+
+def test_bar_is_the_same_on_every_fitting_mesh():
+	for size, count in ((0.02, 2), (0.01, 8), (0.005, 32)):
+		mesh = ddem.mesh.rectangle(reinforced.WIDTH, reinforced.HEIGHT, size, regions={"bar": reinforced.BAR})
+		assert len(mesh.region("bar")) == count
+		assert mesh.areas[mesh.region("bar")].sum() == pytest.approx(2e-4)
+
+
+def test_block_is_tested_for_the_whole_time_though_the_platen_pulls():
+	pulled = reinforced.run(size=0.02, velocity=-1, until=1e-4)
+	assert (pulled.stress[5:] < 0).all()
+	assert pulled.times[-1] == pytest.approx(1e-4, rel=0.01)
+
+
+def test_without_the_bar_the_others_keep_their_fracture_energies():
+	energies = []
+	for bar in (True, False):
+		O.reset()
+		crushed = reinforced.run(size=0.02, seed=3, bar=bar, until=2e-6)
+		energies.append(np.array([O.bodies[int(i)].shape.fractureEnergy for i in O.engines[-2].values("triangleIds")]))
+	others = np.setdiff1d(np.arange(len(energies[0])), crushed.mesh.region("bar"))
+	assert np.array_equal(energies[0][others], energies[1][others])
+	assert not np.array_equal(*energies)
+
+
+# --- scripts
+
+SMALL = {
+	"elastic_impulse": (
+		["--no-reference", "--size", "0.02", "--until", "3e-5", "--instants", "1e-5", "3e-5"], {"displacement.png", "contours.png", "centre.csv", "block.pvd"}
+	),
+	"reinforced_block": (
+		["--until", "2e-5", "--seeds", "1", "2"], {"mesh.png", "history.png", "shape.png", "realisations.png", "seed-1.csv", "seed-2.csv", "seed-1.pvd"}
+	),
+	"spall_bar": (["--size", "0.01"], {"spall.png", "free_end.csv", "bar.pvd"}),
+	"confined_block": (
+		["--pressures", "0", "--size", "0.025", "--strain", "2e-4"], {"confined.png", "pressure-0-rough.csv", "pressure-0-smooth.csv", "pressure-0.pvd"}
+	),
+	"notched_beam": (["--sizes", "0.02", "--deflection", "2e-6"], {"bending.png", "size-20-volume.csv", "size-20-band.csv", "beam.pvd"}),
+	"mesh_orientation": (["--count", "150", "--strain", "2e-4"], {"orientation.png", "crossed-150.csv", "alternating-150.csv", "unstructured-150.csv"} | {
+		f"{pattern}-150.pvd" for pattern in ("crossed", "alternating", "unstructured")
+	}),
+}
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
+	arguments, expected = SMALL[name]
+	script_modules.run(script_modules.load(name), monkeypatch, *arguments, "--out", tmp_path / "new")
+	found = {file.name for file in (tmp_path / "new").iterdir() if file.suffix != ".vtu"}
+	assert found == expected
+	for file in expected:
+		if file.endswith(".csv"):
+			assert len(Series.read(tmp_path / "new" / file)) > 10
+	assert str(tmp_path / "new") in capsys.readouterr().out
+
+
+WRONG = [
+	("elastic_impulse", ["--patch", "1"], "patch = 1.0 m"), ("elastic_impulse", ["--instants", "1"], "--instants"), ("reinforced_block", ["--step", "2"], "--step: 2"),
+	("reinforced_block", ["--until", "0"], "--until: 0"), ("spall_bar", ["--speed", "0"], "--speed: 0"), ("spall_bar", ["--duration", "1"], "--duration"),
+	("confined_block", ["--pressures", "-1"], "--pressures: -1"), ("notched_beam", ["--sizes", "1"], "--sizes: 1"), ("mesh_orientation", ["--count", "3"], "--count: 3")
+]
+
+
+@pytest.mark.parametrize("name, arguments, words", WRONG)
+def test_script_names_what_is_wrong_before_anything_runs(name, arguments, words, monkeypatch, tmp_path, capsys):
+	with pytest.raises(SystemExit) as error:
+		script_modules.run(script_modules.load(name), monkeypatch, *arguments, "--out", tmp_path / "new")
+	assert error.value.code == 2
+	assert words in capsys.readouterr().err
+	assert not len(O.bodies)
