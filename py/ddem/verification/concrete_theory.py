@@ -12,17 +12,17 @@ def friction(parameters, pressure):
 	return parameters["friction"] * (1 + max(pressure, 0.0) / parameters["frictionPressure"])**-parameters["frictionPressureExponent"]
 
 
-def flow_tensor(parameters, stress, complementary=False):
-	"""Principal values of M_p (eq. 5), or of M_c; where the largest or the smallest stresses are close, they share the flow, each by the weight
+def flow_tensors(parameters, stress):
+	"""Principal values (2, 3) of M_p (eq. 5) and of M_c; where the largest or the smallest stresses are close, they share the flow, each by the weight
 	1 − d² (3 − 2d) of its distance d from the extreme one."""
 	stress = np.asarray(stress, float)
-	q = friction(parameters, -stress.mean())
-	parts = []
-	for end in (stress.max(), stress.min()):
-		distance = np.minimum(np.abs(stress - end) / (parameters["sharingTolerance"] * np.abs(stress).max()), 1)
-		weights = 1 - distance**2 * (3 - 2 * distance)
-		parts.append(weights / weights.sum())
-	return (1 + q) * parts[0] + (1 if complementary else -1) * (1 - q) * parts[1]
+	q = friction(parameters, -stress.sum() / 3)
+	largest, smallest = max(stress), min(stress)
+	close = parameters["sharingTolerance"] * max(abs(largest), abs(smallest), np.finfo(float).tiny)
+	distance = np.minimum(np.array([largest - stress, stress - smallest]) / close, 1)
+	weights = 1 - distance**2 * (3 - 2 * distance)
+	first, last = (1 + q) * weights[0] / weights[0].sum(), (1 - q) * weights[1] / weights[1].sum()
+	return np.array([first - last, first + last])
 
 
 def steady_stress(parameters, direction, axis, rate, confinement=0.0):
@@ -41,7 +41,7 @@ def steady_stress(parameters, direction, axis, rate, confinement=0.0):
 
 	def excess(size):
 		stress = size * direction - confinement
-		flow = flow_tensor(parameters, stress)
+		flow = flow_tensors(parameters, stress)[0]
 		amount = rate / (0.5 * flow[axis])
 		if amount <= 0:
 			return -1.0

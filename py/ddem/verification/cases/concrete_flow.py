@@ -75,7 +75,7 @@ def damage_growth(check):
 	drawn = {}
 	for name, sign, growth in (("tension", 1, 1.0), ("compression", -1, parameters["closedGrowth"])):
 		result = MaterialPoint(parameters).uniaxial(rate=sign, until=sign * 0.02, step=1e-6)
-		complementary = concrete_theory.flow_tensor(parameters, (0, sign, 0), complementary=True)
+		_, complementary = concrete_theory.flow_tensors(parameters, (0, sign, 0))
 		# a closed crack grows at half the rate once it is one: σ_Ω < 0 needs damage first, so compare what comes after
 		first = 2000
 		work = np.diff(result.plastic_dissipation[[first, -1]])[0]
