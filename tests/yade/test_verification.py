@@ -111,7 +111,7 @@ def test_page_holds_everything(tmp_path):
 	results = [verification.run(made(function), pictures=True) for function in (right, wrong, broken)] + [verification.run("settling", pictures=True)]
 	path = page.write(results, str(tmp_path / "new"), "run it --so", {"YADE": "1"})
 	text = open(path, encoding="utf-8").read()
-	for expected in ("3 of 10 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"):
+	for expected in ("3 of 11 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"):
 		assert expected in text, expected
 	assert "σ<sub>yy</sub>" in text
 	assert text.count("data:image/png;base64,") == 2
@@ -141,9 +141,9 @@ def test_script_writes_the_promised_list(verify, tmp_path):
 	code, printed = verify("--case", "settling", "rigid_motion", "--json", str(tmp_path / "deep" / "records.json"))
 	assert code == 0, printed
 	records = json.load(open(tmp_path / "deep" / "records.json", encoding="utf-8"))
-	assert [list(record) for record in records] == [KEYS] * 7
-	assert [record["case"] for record in records] == ["settling"] * 4 + ["rigid_motion"] * 3
-	assert "7 of 7 checks passed, 2 cases" in printed
+	assert [list(record) for record in records] == [KEYS] * 10
+	assert [record["case"] for record in records] == ["settling"] * 5 + ["rigid_motion"] * 5
+	assert "10 of 10 checks passed, 2 cases" in printed
 
 
 def test_script_fails_when_a_check_fails(verify, monkeypatch):

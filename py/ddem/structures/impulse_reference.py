@@ -32,10 +32,7 @@ def twin(history, vertex_share=1 / 6):
 	where nothing rotates."""
 	mesh = history.mesh
 	system = dynamics.assemble(*statics.split_at_centroids(mesh), _MATERIAL, _loaded_edges(history), "P1")
-	masses = CONCRETE["density"] * mesh.areas
-	vertices = np.zeros(len(mesh.nodes))
-	np.add.at(vertices, mesh.triangles.ravel(), np.repeat(vertex_share * masses / 3, 3))
-	lumped = np.repeat(np.concatenate([vertices, (1 - vertex_share) * masses]), 2)
+	lumped = np.repeat(dynamics.lumped_masses(mesh, CONCRETE["density"], vertex_share), 2)
 	return _picked(history, system, dynamics.central_differences(system, lumped, history.impulse.at, history.dt, len(history.times) - 1), 1)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix, diags
-from scipy.sparse.linalg import factorized
+from scipy.sparse.linalg import eigsh, factorized
 
 from . import freefem
 
@@ -69,6 +69,26 @@ def assemble(nodes, triangles, material, edges, element="P2"):
 	return System(np.column_stack([first, second])[kind == 0], value[kind == 0].astype(int), matrix(kind == 2), matrix(kind == 3), value[kind == 1])
 
 
+def lumped_masses(mesh, density, vertex_share=1 / 6):
+	"""Masses per thickness [kg/m] of deformable triangles, vertices first, then cores: each vertex has a third of *vertex_share* of every triangle around it.
+
+	:param density: [kg/m³]
+	"""
+	masses = density * mesh.areas
+	vertices = np.bincount(mesh.triangles.ravel(), np.repeat(vertex_share * masses / 3, 3), len(mesh.nodes))
+	return np.concatenate([vertices, (1 - vertex_share) * masses])
+
+
+def first_mode(system, mass, held):
+	"""(angular frequency [rad/s], shape (n,)) of the slowest vibration with a lumped mass (n,) [kg/m], where *held* (n,) is true at rest."""
+	free = np.flatnonzero(~held)
+	scale = diags(1 / np.sqrt(mass[free]))  # turns K u = ω² M u into a standard problem
+	values, vectors = eigsh((scale @ system.stiffness[free][:, free] @ scale).tocsc(), k=1, sigma=0)
+	shape = np.zeros(len(mass))
+	shape[free] = scale @ vectors[:, 0]
+	return np.sqrt(values[0]), shape
+
+
 def newmark(system, pressure, dt, steps):
 	"""Displacements (steps + 1, n) [m] from rest, by Newmark's method of mean acceleration (β = ¼, γ = ½): implicit, of second order, without damping.
 
@@ -88,7 +108,10 @@ def newmark(system, pressure, dt, steps):
 
 
 def central_differences(system, mass, pressure, dt, steps):
-	"""Displacements (steps + 1, n) [m] from rest with a lumped mass (n,) [kg/m], by central differences: explicit, of second order."""
+	"""Displacements (steps + 1, n) [m] with a lumped mass (n,) [kg/m], by central differences: explicit, of second order.
+
+	The velocity is zero half a step before the start, as in YADE: a pressure that does not begin at zero acts half a step more.
+	"""
 	inverse = diags(1 / mass)
 	moved, velocity = np.zeros(len(system.load)), np.zeros(len(system.load))
 	result = [moved]

@@ -89,6 +89,13 @@ def solve(mesh, material, loads, held, rotation="none", **relaxation):
 	return solution
 
 
+def check_equality(check, solution, unbalanced, difference):
+	"""Record how far deformable triangles are from FreeFem++ on the split mesh: their forces in its solution, and their own solution; with both tolerances [-]."""
+	source = "FreeFem++ on the split mesh"
+	check("force out of balance in FreeFem++'s solution [-]", solution.unbalanced, 0, unbalanced, source, scale=1)
+	check("difference of displacements to FreeFem++ [-]", solution.difference, 0, difference, source, scale=1)
+
+
 def _unbalanced(block, engine, displacement, loads, held):
 	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at which round-off of positions does not
 	show: the treatment is linear."""
