@@ -44,9 +44,25 @@ def test_sides_are_pressed_evenly():
 def test_pullback_ends_at_the_first_minimum():
 	surface = np.array([0, 4, 10, 8, 5, 6, 7, 3, 1.0])
 	zeros = np.zeros((9, 2))
-	history = spall.History(np.arange(9.0), np.arange(2.0), zeros, zeros, surface, zeros, 0)
+	history = spall.History(1, np.arange(9.0), np.arange(2.0), zeros, zeros, surface, zeros, 0)
 	assert history.pullback == ((10, 5), (2, 4))
 	assert history.spall_stress == pytest.approx(0.5 * 2400 * 5190.8 * 5, rel=1e-4)  # ½ ρ c Δu with c = √((B + 4μ/3)/ρ) of Table 1
+
+
+def test_ringing_behind_the_front_is_no_pullback():
+	surface = np.array([0, 10, 9.5, 9.8, 6, 6.2, 3])
+	zeros = np.zeros((7, 2))
+	assert spall.History(1, np.arange(7.0), np.arange(2.0), zeros, zeros, surface, zeros, 0).pullback == ((10, 6), (1, 4))
+
+
+def test_largest_tension_is_that_of_pulses_laid_over_each_other():
+	duration, speed = 30e-6, 3.0
+	times = np.linspace(0, 2 * duration, 4001)
+	pulse = lambda t: speed * np.sin(np.pi * t / duration)**2 * ((t > 0) & (t < duration))
+	for depth in (0.005, 0.02, 0.05, 0.2):
+		late = depth / spall.WAVE  # the free end gets the pulse at t = 0
+		expected = spall.IMPEDANCE * (pulse(times - late) - pulse(times + late)).max()
+		assert spall.largest_tension(depth, speed, duration) == pytest.approx(expected, rel=1e-3)
 
 
 def test_crack_is_where_the_damage_is():

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib import rc_context
 
 from .. import plots
+from .spall import WAVE
 
 
 def history(broken, elastic, largest=None):
@@ -28,7 +29,10 @@ def history(broken, elastic, largest=None):
 
 		ax = places["damage"]
 		ax.fill_between(1e3 * broken.places, broken.damage[-1], step="mid", color=plots.COLOURS[1], linewidth=0)
-		ax.set_xlim(0, 1e3 * (broken.places[-1] + broken.places[0]))
+		quarter = 1e3 * (broken.length - WAVE * broken.duration / 4)
+		ax.axvline(quarter, color="k", linewidth=0.7, linestyle="--")
+		ax.annotate("$cT/4$ from\nthe free end", (quarter, 0.97), textcoords="offset points", xytext=(-28, 0), ha="right", va="top")
+		ax.set_xlim(0, 1e3 * broken.length)
 		ax.set_ylim(0, 1)
 		ax.set_xlabel("$x$ [mm]")
 		ax.set_ylabel("damage at the end [-]")
@@ -38,7 +42,13 @@ def history(broken, elastic, largest=None):
 		drawn = ax.pcolormesh(
 			1e3 * broken.places, 1e6 * broken.times, broken.stress / 1e6, cmap=plots.DIVERGING, vmin=-largest, vmax=largest, shading="nearest", rasterized=True
 		)
-		ax.contour(1e3 * broken.places, 1e6 * broken.times, broken.damage, levels=[0.5], colors="k", linewidths=0.7)
+		if broken.damage.max() > 0.5:
+			ax.contour(1e3 * broken.places, 1e6 * broken.times, broken.damage, levels=[0.5], colors="k", linewidths=0.7)
+		_, row, cell = broken.tension
+		(leaves, comes), x = 1e6 * np.array(broken.arrivals), 1e3 * broken.places[cell]
+		ax.plot([1e3 * broken.length, x, 1e3 * broken.length], [leaves, 1e6 * broken.times[row], comes], "k--", linewidth=0.7)
+		ax.plot(x, 1e6 * broken.times[row], "ko", markersize=2.5)
+		ax.set_ylim(0, 1e6 * broken.times[-1])
 		ax.set_xlabel("$x$ [mm]")
 		ax.set_ylabel("time [µs]")
 		fig.colorbar(drawn, ax=ax, label="axial stress [MPa], tension positive", aspect=30, extend="both")
