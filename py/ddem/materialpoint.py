@@ -6,7 +6,7 @@ Crush a point of concrete at 1/s, first free and then in a pressure cell::
 	from yade.ddem.materialpoint import MaterialPoint
 
 	free = MaterialPoint().uniaxial(rate=-1, until=-0.02)
-	print(free.peak)                                              # Peak(stress=-91.1e6, strain=-0.0026)
+	print(free.peak)                                              # Peak(stress=-91.0e6, strain=-0.0026)
 	cell = MaterialPoint().uniaxial(rate=-1, until=-0.02, confinement=40e6)
 	plot(cell.axial_strain, cell.axial_stress)
 
@@ -19,6 +19,7 @@ It works outside YADE too: append the directory that holds the package to the pa
 Tension is positive, SI units; xy is the tensor component of strain (half the engineering shear).
 """
 import difflib
+import math
 import numbers
 from collections import namedtuple
 from collections.abc import Mapping
@@ -33,6 +34,8 @@ EFFECTS = tuple(_materialpoint.effects)
 """Names of the effects, as :yref:`ConcreteDamageMat` has them."""
 
 Peak = namedtuple("Peak", "stress strain")
+
+_STEP = 1e-6  # default strain of a step [-]
 
 
 def concrete(**changes):
@@ -114,7 +117,7 @@ class MaterialPoint:
 		:param rate: axial strain rate [1/s], negative in compression.
 		:param until: axial strain [-] at the end, counted from the confined state and of the sign of *rate*.
 		:param confinement: pressure [Pa] that is put on all around first, in 200 steps at the same rate.
-		:param step: strain per step [-]; default 1e-5, at which peaks are within 0.3 % of those with tiny steps.
+		:param step: strain per step [-]; with the default 1e-6 whole curves are within 0.2 % of the peak of those with tiny steps, ten times as far with 1e-5.
 		:param every: record every so many steps.
 		:returns: :class:`PathResult` of the axial loading
 		"""
@@ -130,7 +133,9 @@ class MaterialPoint:
 		:param duration: of a leg [s].
 		:param strain: targets by component [-], e.g. ``{"yy": -0.01}`` or ``{"yy": [0.005, -0.005, 0.005]}``.
 		:param stress: likewise [Pa]. Components named in neither keep their strain.
-		:param steps: per leg.
+		:param steps: per leg. Where stresses are held, let them be steps of 2e-6 of strain or less: cracked concrete dilates, a free strain may change ten
+			times as fast as the driven one, and with steps of 1e-5 the predictor then opens a closed crack and finds another strain that gives the held
+			stress. In plane strain and in biaxial compression the stress jumps there by 6 MPa.
 		:param every: record every so many steps.
 		:raises ValueError: unknown component, one in both *strain* and *stress*, sequences of different length, bad number.
 		:raises RuntimeError: the material does not bear a prescribed stress; the point then stays at the last step that worked.
@@ -140,11 +145,11 @@ class MaterialPoint:
 
 	def _axial(self, name, rate, until, confinement, step, every, free):
 		rate, until, confinement = (_number(value, f"{name}: {what}") for value, what in ((rate, "rate"), (until, "until"), (confinement, "confinement")))
-		if not rate * until > 0:
-			raise ValueError(f"{name}: rate = {rate} 1/s and until = {until} must have the same sign, negative in compression")
+		if not (rate * until > 0 and math.isfinite(until)):
+			raise ValueError(f"{name}: rate = {rate} 1/s and until = {until} must be finite and have the same sign, negative in compression")
 		if confinement < 0:
 			raise ValueError(f"{name}: confinement = {confinement} Pa is a pressure and cannot be negative")
-		step = 1e-5 if step is None else _number(step, f"{name}: step")
+		step = _STEP if step is None else _number(step, f"{name}: step")
 		if not step > 0:
 			raise ValueError(f"{name}: step = {step} must be a positive strain")
 		if confinement > 0:

@@ -10,38 +10,45 @@ import pytest
 from ddem.materialpoint import EFFECTS, MaterialPoint, concrete
 
 
-# Zubelewicz (2018), Tables 1 and 2, with the closures that the law documents; numbers of an independent implementation. The kernel's own test is converged in
-# the step and complete; here the default step of 1e-5 must be good enough for a user.
+# Peaks of the rate equations of Zubelewicz (2018), Tables 1 and 2, with the closures that the law documents, as SciPy integrates them:
+# yade.ddem.verification.concrete_rates. The default step must be good enough for a user.
 @pytest.mark.parametrize(
 	"rate, until, confinement, strength", [
-		(-1, -0.006, 0, -91.1e6),
-		(-1, -0.006, 20e6, -174e6),
-		(-1, -0.006, 40e6, -249e6),
-		(-1, -0.007, 60e6, -317e6),
-		(1e-3, 0.003, 0, 5.94e6),
-		(1e-1, 0.003, 0, 8.49e6),
-		(1, 0.003, 0, 10.08e6),
-		(10, 0.003, 0, 11.92e6),
-		(1e3, 0.003, 0, 16.25e6),
+		(-1, -0.006, 0, -91.03e6),
+		(-1, -0.006, 20e6, -174.19e6),
+		(-1, -0.006, 40e6, -248.67e6),
+		(-1, -0.007, 60e6, -317.03e6),
+		(1e-3, 0.003, 0, 5.945e6),
+		(1e-1, 0.003, 0, 8.488e6),
+		(1, 0.003, 0, 10.087e6),
+		(10, 0.003, 0, 11.920e6),
+		(1e3, 0.003, 0, 16.259e6),
 	]
 )
 def test_uniaxial_strength(rate, until, confinement, strength):
 	result = MaterialPoint().uniaxial(rate=rate, until=until, confinement=confinement)
-	assert result.peak.stress == pytest.approx(strength, rel=0.01)
+	assert result.peak.stress == pytest.approx(strength, rel=5e-4)
 	assert np.abs(result.stress[:, [0, 2]] + confinement).max() < 1
 	assert result.axial_strain[-1] == pytest.approx(until)
 
 
-@pytest.mark.parametrize("rate, until, strength", [(-1, -0.003, -53.5e6), (1, 0.003, 9.92e6)])
+@pytest.mark.parametrize("rate, until, strength", [(-1, -0.003, -53.53e6), (1, 0.003, 9.919e6)])
 def test_plane_strain_strength(rate, until, strength):
 	result = MaterialPoint().plane_strain(rate=rate, until=until)
-	assert result.peak.stress == pytest.approx(strength, rel=0.01)
+	assert result.peak.stress == pytest.approx(strength, rel=5e-4)
 	assert np.all(result.strain[:, 2] == 0)
+
+
+@pytest.mark.parametrize("rate", (-1e-3, -1, -1e3))
+def test_plane_strain_does_not_jump(rate):
+	"""With steps of 1e-5 the stress jumps by a tenth of the peak after it, where the lateral strain grows ten times as fast as the axial one."""
+	stress = MaterialPoint().plane_strain(rate=rate, until=-0.02).axial_stress
+	assert np.abs(np.diff(stress)).max() < 1e-6 * 70e9  # no faster than the elastic slope, 62 GPa
 
 
 def test_confinement_is_left_out_of_the_axial_strain():
 	result = MaterialPoint().uniaxial(rate=-1, until=-0.006, confinement=40e6)
-	assert result.peak.strain == pytest.approx(-0.0039, abs=1e-4)  # same source as the strengths
+	assert result.peak.strain == pytest.approx(-0.00396, abs=2e-5)  # same source as the strengths
 	assert result.axial_start == pytest.approx(-40e6 / (3 * 30e9), rel=0.15)  # the equation of state stiffens
 	assert result.modulus_factor.max() > 1.1
 
@@ -107,6 +114,7 @@ def test_any_object_with_the_attributes_will_do():
 		(lambda: MaterialPoint(damage=(1, 0, 0, 2)), ["positive semi-definite"]),
 		(lambda: MaterialPoint().uniaxial(rate=1, until=-0.01), ["same sign", "rate = 1.0 1/s"]),
 		(lambda: MaterialPoint().uniaxial(rate=0, until=-0.01), ["same sign"]),
+		(lambda: MaterialPoint().uniaxial(rate=1, until=float("inf")), ["finite", "until = inf"]),
 		(lambda: MaterialPoint().uniaxial(rate=-1, until=-0.01, confinement=-1e6), ["confinement", "-1000000.0 Pa"]),
 		(lambda: MaterialPoint().uniaxial(rate=-1, until=-0.01, step=0), ["step"]),
 		(lambda: MaterialPoint().path(duration=0, strain={"yy": 1e-3}), ["duration", "seconds"]),

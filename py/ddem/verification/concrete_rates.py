@@ -52,6 +52,13 @@ def largest_difference(found, reference):
 	return np.abs(found - reference).max() / np.abs(reference).max()
 
 
+def peak(strain, stress):
+	"""Stress [Pa] at the top of a curve, of the parabola through the three samples there."""
+	top = np.clip(np.abs(stress).argmax(), 1, len(stress) - 2)
+	a, b, c = np.polyfit(strain[top - 1:top + 2] - strain[top], stress[top - 1:top + 2], 2)
+	return c - b * b / (4 * a)
+
+
 def fractions(count):
 	"""1/count, 2/count … 1."""
 	return np.arange(1, count + 1) / count
