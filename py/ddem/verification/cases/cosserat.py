@@ -65,12 +65,14 @@ def lattice_modes(wavenumber, material, beta, share):
 	return np.sqrt(np.maximum(values, 0)), (SHEAR @ vectors).T
 
 
-def continuum_frequencies(wavenumber, material, beta, share):
-	"""Both branches [rad/s] of the continuum, the roots of ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²))."""
-	speed = material.shear / material.density * wavenumber**2
-	core = core_frequency(material, beta, share)**2
-	middle = 0.5 * (core + speed * (1 + beta / 4))
-	return np.sqrt(np.array([middle - np.sqrt(middle**2 - speed * core), middle + np.sqrt(middle**2 - speed * core)]))
+def continuum_frequencies(classic, material, beta, share):
+	"""Both branches [rad/s] of the continuum where the classic one, without rotation of cores, has the frequency *classic* [rad/s] (c_s k, or that of a mesh).
+
+	The roots of ω² = ω_s² (1 − ¼ β_φ ω²/(ω_c² − ω²)).
+	"""
+	square, core = np.square(classic), core_frequency(material, beta, share)**2
+	middle = 0.5 * (core + square * (1 + beta / 4))
+	return np.sqrt(np.array([middle - np.sqrt(middle**2 - square * core), middle + np.sqrt(middle**2 - square * core)]))
 
 
 def core_frequency(material, beta, share):
@@ -91,8 +93,10 @@ def lattice_strip(columns):
 	return ddem.mesh.Mesh(EDGE * np.vstack([low, high]), np.vstack([upright, other]))
 
 
-def measured_frequencies(wavenumber, branches, beta, share, columns=240):
-	"""Frequencies [rad/s] at which a long strip swings in its middle when all of it starts with the velocities of Bloch's modes, the sum of the branches."""
+def measured_frequencies(wavenumber, branches, beta, share, rotation="cosserat"):
+	"""Frequencies [rad/s] at which a long strip swings in its middle when all of it starts with the velocities of Bloch's modes, the sum of the branches; and those
+	of the modes."""
+	columns = 480 if wavenumber * EDGE < 0.5 else 240  # two periods before the ends are felt
 	O.reset()
 	material = tools.elastic(rotationStiffness=beta)
 	expected, modes = lattice_modes(wavenumber, material, beta, share)
@@ -114,7 +118,7 @@ def measured_frequencies(wavenumber, branches, beta, share, columns=240):
 		state.vel, state.angVel = (vx, vy, 0), (0, 0, spin)
 	middle = np.argmin(np.abs(block.mesh.nodes[:, 0] - 0.5 * columns * EDGE) + block.mesh.nodes[:, 1])
 	recorder = tools.Recorder(lambda: block.displacements[middle, 1], 4)
-	tools.start(recorder.engine, step=0.5, rotation="cosserat", vertexShare=share)
+	tools.start(recorder.engine, step=0.5, rotation=rotation, vertexShare=share)
 	fastest = np.sqrt((material.bulk + 4 / 3 * material.shear) / material.density)
 	O.run(int(0.45 * columns * EDGE / fastest / O.dt), True)  # until the ends are felt
 	guesses = 2 / O.dt * np.arcsin(0.5 * O.dt * expected[list(branches)])
@@ -122,60 +126,69 @@ def measured_frequencies(wavenumber, branches, beta, share, columns=240):
 	return 2 / O.dt * np.sin(0.5 * O.dt * found), expected[list(branches)]  # without the leapfrog's own, known error
 
 
-@case(group="waves and vibration", seconds=3)
+@case(group="waves and vibration", seconds=4)
 def cosserat_dispersion(check):
 	"""Pseudo-Cosserat: dispersion of shear waves
 
 	Cores are tied to their vertices by β_φ but not to each other. Linearised (Δu_e = u_e − u_i − φ e_z × r_e), the rotation strain of an equilateral triangle
 	is the rotation of the material less that of the core, ε_φ = ½ curl u − φ. For a shear wave u_y(x, t) the energies per volume are ½ρ u̇² + ½ j φ̇² and ½μ
-	u'² + ½μβ_φ (½u' − φ)², with j = J_M/S = ρ (1/12 − α/3) Σ|r_e|². So
+	u'² + ½μβ_φ (½u' − φ)², with j = J_M/S = ρ (1/12 − α/3) Σ|r_e|². The equations of Lagrange are
 
 		ρ ü = μ u'' + ½ μβ_φ ∂_x (½u' − φ),   j φ̈ = μβ_φ (½u' − φ)
 
-		ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²)),   ω_c² = μβ_φ/j
+	With all in proportion to e^{i(kx − ωt)} the second gives the rotation of the cores, and with it the first the dispersion relation:
 
-	Two branches: slow waves, in which cores follow the material at rest (c → c_s as k → 0, for any β_φ) and lag behind the faster it swings; and above ω_c
-	cores that swing against it. ω_c is 6√β_φ c_s/a with α = 1/6 and triangles of edge a: a matter of the mesh, so there the lattice shows as well. It is
-	solved exactly by Bloch's theorem, with matrices assembled in the case's own file from the equations of the element.
+		φ = ½u' ω_c²/(ω_c² − ω²),   ω_c² = μβ_φ/j
 
-	Reference: Bloch's theorem for the lattice; the continuum above for long waves (derived here; compare Cosserat and Cosserat 1909).
+		ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²))
 
-	Expect: the engine's waves are those of the lattice to 1e-4 on both branches, for the paper's β_φ = 2 and for a soft 0.05, whose branches avoid each other
-	near ka = 0.8; the continuum holds within 1 % up to ka = 0.4.
+	Two branches: slow waves, in which cores turn with the material, the more the faster it swings, and by their inertia slow the wave down (c → c_s as k → 0, for
+	any β_φ); and above ω_c waves in which cores swing against it, c → √(1 + β_φ/4) c_s as k → ∞. Between ω_c/√(1 + β_φ/4) and ω_c the continuum has none. It is
+	the reduced Cosserat medium, without couple stresses: Eringen's micropolar one with κ = ½μβ_φ and γ = 0. ω_c is 6√β_φ c_s/a with α = 1/6 and triangles of
+	edge a: a matter of the mesh, so there the lattice shows as well. It is solved exactly by Bloch's theorem, with matrices assembled in the case's own file
+	from the equations of the element.
+
+	Reference: Bloch's theorem for the lattice; for long waves the continuum above, derived here (Eringen, Microcontinuum Field Theories, 1999; reduced medium:
+	Grekova, Kulesh and Herman, Bull. Seismol. Soc. Am. 99, 2009), with the classic dispersion of the same mesh, measured with rotation “none”, for c_s k.
+
+	Expect: the engine's waves are those of the lattice to 1e-5 on both branches, for the paper's β_φ = 2 and for a soft 0.05, whose branches avoid each other
+	near ka = 0.8. Up to there the continuum has the slow branch within 2e-4 with β_φ = 2, where the cores slow it by 2e-3, and both within 2e-3 with 0.05, where
+	they slow it by 6e-2; the fast branch with β_φ = 2 bends down by 1 %, which only the lattice explains.
 	"""
-	sets = {2.0: 1 / 6, 0.05: 0.02}  # β_φ and α, that is the inertia of cores
+	sets = {2.0: (1 / 6, (2.5e-4, 2e-2)), 0.05: (0.02, (3e-3, 3e-3))}  # β_φ: α, that is the inertia of cores; how close the continuum comes to each branch
 	measured, plain = {}, tools.elastic()
-	for beta, share in sets.items():
-		points = np.array([0.2, 0.4, 0.8, 1.2, 1.8, 2.4, 3.0])
+	points = np.array([0.4, 0.8, 1.2, 1.8, 2.4, 3.0])
+	long = points < 1
+	for beta, (share, tolerances) in sets.items():
 		both = [measured_frequencies(ka / EDGE, (0, 1), beta, share) for ka in points]
 		found, exact = (np.array([pair[i] for pair in both]) for i in (0, 1))
+		classic = [measured_frequencies(ka / EDGE, (1, ), 0.0, share, "none")[0][0] for ka in points[long]]  # without β_φ the lowest branch is free turning
+		continuum = continuum_frequencies(classic, plain, beta, share).T
 		measured[beta] = points, found
 		for branch, name in enumerate(("lower", "upper")):
 			worst = np.argmax(np.abs(found[:, branch] / exact[:, branch] - 1))
 			check(
 				f"{name} branch, β_φ = {beta:g}, frequency at ka = {points[worst]:g}, the worst of {len(points)} [rad/s]", found[worst, branch],
-				exact[worst, branch], 1e-4, "Bloch's theorem for the lattice"
+				exact[worst, branch], 1e-5, "Bloch's theorem for the lattice"
 			)
-		for branch, name in enumerate(("lower", "upper")):
-			long = continuum_frequencies(points[:2] / EDGE, plain, beta, share)[branch]
-			worst = np.argmax(np.abs(found[:2, branch] / long - 1))
+			worst = np.argmax(np.abs(found[long, branch] / continuum[:, branch] - 1))
 			check(
-				f"{name} branch, β_φ = {beta:g}, long waves, frequency at ka = {points[worst]:g} [rad/s]", found[worst, branch], long[worst], 1e-2,
-				"continuum: ρω² = μk² (1 − ¼ β_φ ω²/(ω_c² − ω²))"
+				f"{name} branch, β_φ = {beta:g}, long waves, frequency at ka = {points[worst]:g} [rad/s]", found[worst, branch], continuum[worst, branch],
+				tolerances[branch], "continuum: ω² = ω_s² (1 − ¼ β_φ ω²/(ω_c² − ω²))"
 			)
 
 	check.note(
-		"""The lattice has a dispersion of its own: with five sixths of the mass in the cores short waves run faster than c_s, by 0.15 % at 16 triangles to
-		the wavelength (ka = 0.4 gives 0.5 %), where β_φ makes them slower."""
+		"""The lattice has a dispersion of its own: with five sixths of the mass in the cores short waves run faster than c_s, by 0.15 % with 31 triangles to
+		the wavelength (ka = 0.2) and 0.6 % with 16 (ka = 0.4), where the cores' rotation slows them by 0.01 % and 0.06 %."""
 	)
 
 	def draw():
 		fig, panels = tools.axes(plots.PAGE, 72, panels=2)
 		unit = np.sqrt(plain.shear / plain.density) / EDGE
 		k = np.linspace(0.02, np.pi, 120)
-		for ax, (beta, share) in zip(panels, sets.items()):
+		for ax, (beta, (share, _)) in zip(panels, sets.items()):
 			lattice = np.array([lattice_modes(ka / EDGE, plain, beta, share)[0][:2] for ka in k]) / unit
-			continuum = continuum_frequencies(k / EDGE, plain, beta, share) / unit
+			continuum = continuum_frequencies(k * unit, plain, beta, share) / unit
 			points, found = measured[beta]
 			for branch in (0, 1):
 				ax.plot(k, lattice[:, branch], "-", color="0.3", linewidth=0.8, label="lattice, exact" if not branch else None)
@@ -231,9 +244,10 @@ def cosserat_to_classic(check, size=0.008):
 	betas = np.array([2, 0.5, 0.1, 1e-2, 1e-3, 1e-4, 1e-5])
 	differences = np.array([np.linalg.norm(displacements("cosserat", beta) - classic) for beta in betas]) / np.linalg.norm(classic)
 	order = np.log(differences[-2] / differences[-1]) / np.log(betas[-2] / betas[-1])
-	check("order at which the difference vanishes with β_φ [-]", order, 1, 3e-2, "stiffness in proportion to β_φ, upper branch of the dispersion relation")
+	check("order at which the difference vanishes with β_φ [-]", order, 1, 2e-2, "stiffness in proportion to β_φ, upper branch of the dispersion relation")
 	gone = np.linalg.norm(displacements("cosserat", 0) - classic) / np.linalg.norm(classic)
-	check("difference of displacements at β_φ = 0 [-]", gone, 0, 1e-7, "classic continuum", scale=1)
+	check("largest difference of displacements, any β_φ [-]", differences.max(), 0, 5e-3, "classic continuum", scale=1)
+	check("difference of displacements at β_φ = 0 [-]", gone, 0, 3e-8, "classic continuum", scale=1)
 
 	def draw():
 		fig, (ax,) = tools.axes(height=58)
