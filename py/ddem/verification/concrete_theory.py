@@ -81,9 +81,10 @@ def volume_strain(parameters, pressure):
 
 
 def fib_factor(rate, tension):
-	"""Strength at a strain rate [1/s] over the static one: fib Model Code for Concrete Structures 2010 (2013), section 5.1.11.2.
+	"""Strength at a strain rate [1/s] over the static one: fib Model Code for Concrete Structures 2010 (2013), clause 5.1.11.2.
 
 	Compression: (ε̇/30·10⁻⁶)^0.014 up to 30 /s, 0.012 (ε̇/30·10⁻⁶)^⅓ above; tension: (ε̇/10⁻⁶)^0.018 up to 10 /s, 0.0062 (ε̇/10⁻⁶)^⅓ above.
+	With these rounded factors the branches meet within 1.1 % and 0.1 %.
 	"""
 	static, power, limit, factor = (1e-6, 0.018, 10, 0.0062) if tension else (30e-6, 0.014, 30, 0.012)
 	ratio = np.asarray(rate, float) / static
@@ -92,10 +93,12 @@ def fib_factor(rate, tension):
 
 FIB_STATIC = {True: 1e-6, False: 30e-6}  #: rates [1/s] of the static strength, in tension and in compression
 
-#: Strength in biaxial compression over that in uniaxial compression, at σ_1/σ_2 = 1, 0.52 and 0: tests of Kupfer, Hilsdorf and Rüsch (ACI Journal 66, 1969)
-KUPFER = ((1.16, 1.16), (1.25 * 0.52, 1.25), (0.0, 1.0))
+def kupfer(ratio):
+	"""Strength in biaxial compression over the uniaxial one at σ_1/σ_2 from 0 to 1: Kupfer and Gerstle (J. Eng. Mech. Div. ASCE 99, 1973), fitted to the tests of
+	Kupfer, Hilsdorf and Rüsch (ACI Journal 66, 1969)."""
+	return (1 + 3.65 * ratio) / (1 + ratio)**2
 
 
 def richart(uniaxial, confinement):
-	"""Strength of confined cylinders, f_c + 4.1 σ_3 [Pa]: Richart, Brandtzaeg and Brown (1928)."""
+	"""Strength of confined cylinders, f_c + 4.1 σ_3 [Pa]: Richart, Brandtzaeg and Brown (University of Illinois, Bulletin 185, 1928)."""
 	return uniaxial + 4.1 * confinement

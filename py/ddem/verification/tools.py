@@ -123,7 +123,7 @@ def axes(width=plots.COLUMN, height=None, panels=1, **options):
 		return fig, list(row)
 
 
-def legend(ax, columns=2):
+def legend(ax, columns=2, **options):
 	"""A legend above the axes, where it covers nothing."""
 	with rc_context(plots.STYLE):
-		ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.2, handlelength=1.6)
+		ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.2, handlelength=1.6, **options)

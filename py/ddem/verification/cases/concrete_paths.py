@@ -43,25 +43,23 @@ def concrete_paths(check):
 		drawn[name] = strain, found, expected
 
 	def draw():
-		fig, panels = tools.axes(plots.PAGE, 58, panels=3)
-		shear = [name for name in PATHS if "shear" in name]
-		for ax, names in zip(panels, ([name for name in PATHS if name not in shear], *([name] for name in shear))):
-			for name in names:
-				strain, found, expected = drawn[name]
-				if name in shear:
-					after = slice(SAMPLES, None)
-					for component, label in enumerate(("xx", "yy", "zz", "xy")):
-						ax.plot(100 * strain[after, 3], found[after, component] / 1e6, label=rf"$\sigma_{{{label}}}$")
-						ax.plot(100 * strain[after, 3], expected[after, component] / 1e6, "k:", linewidth=0.8)
-					ax.set_xlabel(r"shear strain $\varepsilon_{xy}$ [%]")
-					ax.set_title(name)
-				else:
-					ax.plot(100 * strain[:, 1], found[:, 1] / 1e6, label=name)
-					ax.plot(100 * strain[:, 1], expected[:, 1] / 1e6, "k:", linewidth=0.8)
-					ax.set_xlabel(r"strain $\varepsilon_{yy}$ [%]")
-			ax.legend(loc="best" if len(names) == 1 else "lower right", fontsize="x-small")
-		panels[0].set_title("plane strain, biaxial")
-		panels[0].set_ylabel("stress [MPa]")
+		fig, panels = tools.axes(plots.PAGE, 66, panels=3)
+		dotted = {"color": "k", "linestyle": ":", "linewidth": 0.8}
+		titles = ("plane strain, biaxial", *(name for name in PATHS if "shear" in name))
+		for name, (strain, found, expected) in drawn.items():
+			if name not in titles:
+				panels[0].plot(100 * strain[:, 1], found[:, 1] / 1e6, label=name)
+				panels[0].plot(100 * strain[:, 1], expected[:, 1] / 1e6, **dotted)
+				continue
+			ax, sheared = panels[titles.index(name)], slice(SAMPLES, None)
+			for component, label in enumerate(("xx", "yy", "zz", "xy")):
+				ax.plot(100 * strain[sheared, 3], found[sheared, component] / 1e6, label=rf"$\sigma_{{{label}}}$")
+				ax.plot(100 * strain[sheared, 3], expected[sheared, component] / 1e6, **dotted)
+			ax.set_xlabel(r"shear strain $\varepsilon_{xy}$ [%]")
+			tools.legend(ax, 2, title=name)
+		panels[0].set_xlabel(r"strain $\varepsilon_{yy}$ [%]")
+		panels[0].set_ylabel(r"stress, left: $\sigma_{yy}$ [MPa]")
+		tools.legend(panels[0], 1)
 		return fig
 
 	check.picture(draw, "Stress on other paths at 1/s. Coloured: material point; dotted: the rate equations.")
