@@ -38,8 +38,8 @@ def kirsch(check, fine=0.0004):
 
 	Reference: Kirsch (1898); Muskhelishov (1953), § 56a. FreeFem++ 4.15 with linear triangles.
 
-	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; the peak
-	stress is within 2 % of Kirsch's with triangles of a twenty-fifth of the radius at the hole.
+	Expect: the forces of deformable triangles balance in FreeFem++'s solution to round-off; relaxed displacements agree with it to the residual; with
+	triangles of a twenty-fifth of the radius at the hole displacements are within 0.3 % of Kirsch's, the peak stress within 1 %.
 	"""
 	material = tools.elastic()
 	exact = elasticity.kirsch(material, PULL, RADIUS)
@@ -48,21 +48,21 @@ def kirsch(check, fine=0.0004):
 	held = np.column_stack([x == 0, y == 0])
 	loads = statics.nodal_loads(mesh, lambda x, y: (x > SIDE - 1e-9) | (y > SIDE - 1e-9), exact.traction)
 	solution = statics.solve(mesh, material, loads, held)
-	check("force out of balance in FreeFem++'s solution [-]", solution.unbalanced, 0, 1e-11, "FreeFem++ on the split mesh", scale=1)
-	check("difference of displacements to FreeFem++ [-]", solution.difference, 0, 1e-5, "FreeFem++ on the split mesh", scale=1)
+	statics.check_equality(check, solution, unbalanced=1e-12, difference=1e-6)
 
 	stress = solution.block.stress.mean(axis=1)[:, [0, 1, 3]]
 	angles = np.linspace(0, np.pi / 2, 19)
 	hoop = hoop_at_the_hole(mesh.centroids, stress, angles) / PULL
-	check("stress along the hole at its flank over S [-]", hoop[-1], 3, 2e-2, "Kirsch (1898): 3 S")
+	check("stress along the hole at its flank over S [-]", hoop[-1], 3, 1e-2, "Kirsch (1898): 3 S")
 	check("stress along the hole ahead of it over S [-]", hoop[0], -1, 3e-2, "Kirsch (1898): −S")
 	check(
 		"stress along the hole, largest error over S [-]", np.abs(hoop - 1 + 2 * np.cos(2 * angles)).max(), 0, 5e-2, "Kirsch (1898): S (1 − 2 cos 2θ)", scale=1
 	)
-	error = stress - exact.stress(mesh.centroids)
+	relaxed, moved = solution.relaxed[:len(mesh.nodes)], exact.displacement(mesh.nodes)
+	check("displacement of the nodes, largest error over the largest [-]", np.abs(relaxed - moved).max() / np.abs(moved).max(), 0, 5e-3, "Kirsch (1898)", scale=1)
 	norm = lambda values: np.sqrt(np.average((values**2).sum(axis=1), weights=mesh.areas))
-	check("stress everywhere, mean square error [-]", norm(error) / norm(exact.stress(mesh.centroids)), 0, 2e-2, "Kirsch (1898)", scale=1)
-	relaxed = solution.relaxed[:len(mesh.nodes)]
+	wanted = exact.stress(mesh.centroids)
+	check("stress everywhere, root mean square error [-]", norm(stress - wanted) / norm(wanted), 0, 2e-2, "Kirsch (1898)", scale=1)
 
 	def draw():
 		fig, (left, right) = tools.axes(plots.PAGE, 68, panels=2)
