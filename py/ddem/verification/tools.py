@@ -1,10 +1,10 @@
 # GPL v2 or later, see LICENSE.
 """What several cases need: materials, engines, motion of whole samples, axes of pictures."""
 import contextlib
+import weakref
 
 import numpy as np
 from matplotlib import rc_context
-
 from scipy.optimize import least_squares
 
 from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, PyRunner, log
@@ -71,19 +71,17 @@ def set_velocity(block, velocity, spin=0.0):
 		O.bodies[int(i)].state.angVel = (0, 0, float(value))
 
 
-_recorders = []  # PyRunner finds them here by number
+_recorders = weakref.WeakValueDictionary()  # by number, for PyRunner
 
 
 class Recorder:
 	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the DeformableEngine, so that positions are those of the
-	time."""
+	time. Keep the recorder itself as long as it runs."""
 
 	def __init__(self, function, every):
 		self._function, self._rows = function, []
-		self.engine = PyRunner(
-			command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{len(_recorders)}]._take()", iterPeriod=every, initRun=True
-		)
-		_recorders.append(self)
+		_recorders[id(self)] = self
+		self.engine = PyRunner(command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{id(self)}]._take()", iterPeriod=every, initRun=True)
 
 	def _take(self):
 		self._rows.append((O.time, np.array(self._function(), float)))
