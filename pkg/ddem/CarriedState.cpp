@@ -52,7 +52,7 @@ namespace {
 
 std::vector<Real> CarriedState::numbers() const
 {
-	std::vector<Real> all { Real(nodes.size()), Real(cores.size()), Real(concreteNumbers), pendingWork[0], pendingWork[1], pendingWork[2] };
+	std::vector<Real> all { Real(nodes.size()), Real(cores.size()), Real(concreteNumbers), pendingWork[0], pendingWork[1], pendingWork[2], lastTimeStep };
 	for (const auto& [id, point] : nodes)
 		writePoint(all, id, point);
 	for (const auto& [id, core] : cores) {
@@ -73,6 +73,7 @@ CarriedState CarriedState::fromNumbers(const std::vector<Real>& all)
 	if (std::size_t(from.next()) != concreteNumbers) throw std::runtime_error("the saved state of concrete has other variables than this plugin's: load it with the plugin that saved it");
 	for (auto& work : carried.pendingWork)
 		work = from.next();
+	carried.lastTimeStep = from.next();
 	for (std::size_t i = 0; i < nNodes; i++)
 		readPoint(from, carried.nodes[Body::id_t(from.next())]);
 	for (std::size_t i = 0; i < nCores; i++) {

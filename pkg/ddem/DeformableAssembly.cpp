@@ -89,6 +89,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 {
 	DeformableAssembly made;
 	made.sceneBodies = scene.bodies->size();
+	made.vertexShare = vertexShare;
 	std::vector<std::int32_t> nodeRow(scene.bodies->size(), -1);
 	for (const auto& b : *scene.bodies) {
 		if (!b || !b->shape) continue;
@@ -135,7 +136,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 			s.core.mass[i] = mass.core;
 			if (rotation == ddem::RotationTreatment::Cosserat) s.spin.inertia[i] = mass.inertia;
 			const ddem::TriangleStiffness stiffness { material.bulk(), material.shear(), material.rotationStiffness };
-			made.restStep.push_back(2 / ddem::highestFrequency(reference, stiffness, shape.thickness, mass, rotation));
+			made.restFrequency.push_back(ddem::highestFrequency(reference, stiffness, shape.thickness, mass, rotation));
 		} catch (const std::invalid_argument& error) {
 			reject(b, error.what());
 		}
@@ -219,6 +220,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 			if (s.spin.size() && known->second.spins) book.spinVelocity[i] = known->second.lastSpin;
 		}
 	s.setBook(book);
+	s.lastTimeStep = carried.lastTimeStep;
 	return made;
 }
 
@@ -228,6 +230,7 @@ CarriedState DeformableAssembly::carry() const
 	if (!system) return carried;
 	const ddem::TriangleSystem&      s     = *system;
 	const ddem::TriangleSystem::Book book  = s.book();
+	carried.lastTimeStep                   = s.lastTimeStep;
 	carried.pendingWork                    = { book.gravityWork, book.externalWork, book.dampingLoss };
 	const auto point                       = [](CarriedState::Point& to, const ddem::Points& from, const std::vector<double>& last, unsigned blocked, std::size_t i) {
                 to.blocked = blocked;
@@ -459,29 +462,6 @@ void DeformableAssembly::exposeReactions(ForceContainer& forces) const
 		forces.addForceUnsynced(nodes[i]->getId(), Vector3r(system->node.force[2 * i], system->node.force[2 * i + 1], 0));
 	for (const auto i : constrainedCores)
 		forces.addForceUnsynced(cores[i]->getId(), Vector3r(system->core.force[2 * i], system->core.force[2 * i + 1], 0));
-}
-
-std::pair<double, std::size_t> DeformableAssembly::timeStep() const
-{
-	double      best  = std::numeric_limits<double>::infinity();
-	std::size_t where = 0;
-	for (std::size_t i = 0; i < cores.size(); i++) {
-		double step = restStep[i];
-		if (const ddem::ConcreteState* state = system->concreteStates(i)) {
-			const ddem::ConcreteGroupLaw& law = system->concrete[system->groupOf(i).concrete];
-			if (law.effects & ddem::ConcreteEffects::EquationOfState) {
-				double stiffest = 1;
-				for (std::size_t k = 0; k < 3; k++)
-					stiffest = std::max(stiffest, ddem::stiffnessFactor(law.parameters, state[k]));
-				step /= std::sqrt(stiffest);
-			}
-		}
-		if (step < best) {
-			best  = step;
-			where = i;
-		}
-	}
-	return { best, where };
 }
 
 } // namespace yade

@@ -4,6 +4,7 @@
 
 #include <pkg/ddem/ConcreteDamageMat.hpp>
 #include <pkg/ddem/DeformableTriangle.hpp>
+#include <pkg/ddem/kernel/SystemStableStep.hpp>
 
 #include <array>
 #include <map>
@@ -27,6 +28,7 @@ struct CarriedState {
 	std::map<Body::id_t, Point> nodes;
 	std::map<Body::id_t, Core>  cores;
 	std::array<Real, 3>         pendingWork {}; ///< of the energy book [J]: gravity, external, damping
+	Real                        lastTimeStep = 0; ///< [s]
 
 	/// One vector of numbers and back. \throws std::runtime_error if the numbers cannot be such a state.
 	std::vector<Real>   numbers() const;
@@ -68,10 +70,8 @@ public:
 	/// Adds internal forces of bodies with blocked degrees of freedom to the container, so that O.forces.f(id) shows reactions.
 	void exposeReactions(ForceContainer& forces) const;
 
-	/// 2/ω of every triangle at rest [s].
-	const std::vector<double>& restTimeSteps() const { return restStep; }
-	/// Smallest stable step now [s] and the triangle that sets it.
-	std::pair<double, std::size_t> timeStep() const;
+	/// Bound on the time step in the present state, see ddem::stableStep.
+	ddem::SystemStableStep timeStep(Real enough = std::numeric_limits<Real>::infinity()) const { return ddem::stableStep(*system, restFrequency, vertexShare, enough); }
 
 private:
 	using Fingerprint = std::pair<shared_ptr<Material>, std::vector<double>>;
@@ -80,7 +80,8 @@ private:
 	std::vector<Body::id_t>  nodeId, coreId;                   ///< as assembled; erasing a body takes its id away
 	std::vector<unsigned>    nodeBlocked, coreBlocked;         ///< State::blockedDOFs as last taken up
 	std::vector<std::size_t> constrainedNodes, constrainedCores;
-	std::vector<double>      restStep;
+	std::vector<double>      restFrequency; ///< highest of every triangle [rad/s]
+	Real                     vertexShare = 0;
 	std::size_t              sceneBodies = 0;
 
 	void applyBlockedDegreesOfFreedom();

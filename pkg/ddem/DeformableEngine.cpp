@@ -18,13 +18,13 @@ CREATE_LOGGER(DeformableEngine);
 
 namespace {
 
-	constexpr int  stateVersion   = 1;
-	constexpr long boundInterval  = 50; ///< steps between checks of the time step against the equation of state
+	constexpr int  stateVersion   = 2;
+	constexpr long boundInterval  = 100; ///< steps between checks of the time step against shape and equation of state
 
 	/// Engines that neither look at deformable bodies nor add forces to them.
 	bool isQuiet(const Engine& engine)
 	{
-		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableEngine" };
+		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper", "DeformableEngine" };
 		return names.count(engine.getClassName()) > 0;
 	}
 
@@ -201,11 +201,11 @@ void DeformableEngine::checkEngines()
 
 void DeformableEngine::checkTimeStep()
 {
-	const auto [step, triangle] = assembly.timeStep();
+	const auto [step, triangle] = assembly.timeStep(scene->dt);
 	if (scene->dt <= step) return;
 	std::ostringstream text;
 	text << "O.dt = " << scene->dt << " s is above the critical time step " << step << " s, set by triangle " << placeOf(*assembly.cores[triangle]) << " in step " << scene->iter
-	     << "; the simulation would blow up: set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place";
+	     << "; the simulation would blow up: set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; where triangles stretch, let DeformableTimeStepper() in O.engines lower it";
 	throw std::runtime_error(text.str());
 }
 
@@ -290,12 +290,19 @@ void DeformableEngine::postSave(DeformableEngine&)
 
 // ---- what Python sees ----------------------------------------------------------------------------------------------------------------------------------
 
-Real DeformableEngine::criticalTimeStep() { return current().timeStep().first; }
+Real DeformableEngine::criticalTimeStep() { return current().timeStep().step; }
+
+Real DeformableEngine::stableStep(Scene& of, Real enough)
+{
+	assembleIfNeeded(of);
+	if (exposed) assembly.importChanges(of);
+	return assembly.timeStep(enough).step;
+}
 
 Real DeformableEngine::timeStepOfScene() const
 {
 	Scene& now = *Omega::instance().getScene();
-	return DeformableAssembly::fromScene(now, rotationTreatment(), vertexShare, CarriedState()).timeStep().first;
+	return DeformableAssembly::fromScene(now, rotationTreatment(), vertexShare, CarriedState()).timeStep().step;
 }
 
 boost::python::tuple DeformableEngine::rulingTriangle()

@@ -21,6 +21,8 @@ public:
 	/// What Python reads goes through here: the arrays, with what was changed in State taken up.
 	DeformableAssembly& current();
 	Real                  criticalTimeStep();
+	/// Bound on the time step [s] while a step is under way; any number that is at least `enough` if it surely is.
+	Real                  stableStep(Scene& of, Real enough);
 	Real                  timeStepOfScene() const;
 	boost::python::tuple  rulingTriangle();
 	boost::python::object array(const std::string& name);
@@ -48,7 +50,7 @@ public:
 		((int,savedVersion,0,Attr::hidden,"Version of the saved state"))
 		((bool,exposed,true,Attr::hidden,"Whether State agreed with the arrays when saved")),
 		/*ctor*/,
-		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on the time step [s]: 2/ω of the stiffest element, at the current state of the equation of state. Works before the first step.")
+		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on the time step [s]: 2/ω of the stiffest element, in its present shape (cores of stretched elements need smaller steps) and at the present pressure of the equation of state, with undamaged moduli. Works before the first step; :yref:`DeformableTimeStepper` keeps O.dt below it. Limit: stress itself shifts it by about σ/(2E), which is left out.")
 		.def("timeStepOfScene",&DeformableEngine::timeStepOfScene,"The same bound [s] for the triangles of the scene, from this engine's settings, when the engine is not (yet) in O.engines.")
 		.def("rulingTriangle",&DeformableEngine::rulingTriangle,"The triangle that rules the time step, as (body id, its own bound [s]).")
 		.def("array",&DeformableEngine::array,(boost::python::arg("name")),"Numpy view, without a copy, of a state array of the whole sample; rows in the order of :yref:`DeformableEngine.values` 'nodeIds' and 'triangleIds'.\n\n"

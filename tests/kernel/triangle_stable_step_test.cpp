@@ -2,6 +2,8 @@
 // Element stiffness and the bound that it sets on the time step.
 #include "TriangleSamples.hpp"
 
+#include <pkg/ddem/kernel/SystemStableStep.hpp>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
@@ -267,6 +269,205 @@ TEST(Statics, coreTurnsByTheMeanTurnOfItsVertices) // patch test of the pseudo-C
 		const ElementMatrix plain = elementStiffness(reference, { 30, 26, 0 }, 1, RotationTreatment::Cosserat);
 		EXPECT_LT(((k - plain) * u).head<6>().cwiseAbs().maxCoeff(), 1e-12 * (plain * u).head<6>().cwiseAbs().maxCoeff());
 	}
+}
+
+// ---- in a deformed shape ---------------------------------------------------------------------------------------------------------------------------------
+
+/// Displacement gradient without rotation, so that every frame stays where it is; stretches between 0.4 and 4.
+struct Stretch {
+	double xx, yy, xy;
+
+	RelativeDisplacements<double> of(const TriangleReference<double>& reference) const
+	{
+		RelativeDisplacements<double> du;
+		for (std::size_t e = 0; e < 3; e++) {
+			const Point& r = reference.arm[e];
+			du[e]          = { xx * r.x + xy * r.y, xy * r.x + yy * r.y };
+		}
+		return du;
+	}
+};
+
+Stretch randomStretch(Random& random)
+{
+	const double first = std::exp(random.uniform(std::log(0.4), std::log(4.))), second = std::exp(random.uniform(std::log(0.4), std::log(4.)));
+	const double angle = random.uniform(0, M_PI), c = std::cos(angle), s = std::sin(angle);
+	return { first * c * c + second * s * s - 1, first * s * s + second * c * c - 1, (first - second) * c * s };
+}
+
+Eigen::VectorXd frequenciesSquared(const ElementMatrix& stiffness, const LumpedMass& mass, RotationTreatment rotation)
+{
+	ElementVector scale = elementMass(mass).cwiseInverse().cwiseSqrt();
+	if (rotation != RotationTreatment::Cosserat) scale[8] = 0;
+	const ElementMatrix k = scale.asDiagonal() * stiffness * scale.asDiagonal();
+	return Eigen::SelfAdjointEigenSolver<ElementMatrix>(k, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+/// ∂Δu/∂(unknowns) in the present shape, by central differences of what the element loops do.
+template <class Frame>
+Eigen::Matrix<double, 6, 9> relativeDisplacementGradient(const TriangleReference<double>& reference, const RelativeDisplacements<double>& du)
+{
+	const double size = std::sqrt(reference.area());
+	const auto   at   = [&](int unknown, double change) {
+                RelativeDisplacements<double> fromCentre = du;
+                double                        angle      = 0;
+                for (std::size_t e = 0; e < 3; e++)
+                        fromCentre[e] = fromCentre[e] + reference.arm[e];
+                const Point along { unknown % 2 ? 0 : change * size, unknown % 2 ? change * size : 0 };
+                if (unknown < 6)
+                        fromCentre[std::size_t(unknown / 2)] = fromCentre[std::size_t(unknown / 2)] + along;
+                else if (unknown < 8)
+                        for (auto& d : fromCentre)
+                                d = d - along;
+                else
+                        angle = change;
+                const auto                  frame = Frame::rotation(reference, fromCentre, angle);
+                Eigen::Matrix<double, 6, 1> result;
+                for (int e = 0; e < 3; e++) {
+                        const Point own  = relativeDisplacement(frame, fromCentre[std::size_t(e)], reference.arm[std::size_t(e)]);
+                        result[2 * e]     = own.x;
+                        result[2 * e + 1] = own.y;
+                }
+                return result;
+	};
+	constexpr double            h = 1e-5;
+	Eigen::Matrix<double, 6, 9> gradient;
+	for (int unknown = 0; unknown < 9; unknown++)
+		gradient.col(unknown) = (at(unknown, h) - at(unknown, -h)) / (2 * h * (unknown < 8 ? size : 1));
+	return gradient;
+}
+
+TEST(DeformedStiffness, isTheSecondDerivativeOfTheEnergy) // Hessian in Δu between the derivatives of Δu: all but the geometric part
+{
+	Random random(41);
+	for (int i = 0; i < 50; i++)
+		for (const auto rotation : allTreatments) {
+			const auto          reference = makeReference(random.skewedTriangle());
+			const Material      material;
+			const auto          du   = randomStretch(random).of(reference);
+			const auto          plain = rotation == RotationTreatment::Cosserat ? rotation : RotationTreatment::None;
+			// at rest, of the vertices alone: Δu_e = u_e
+			const Eigen::Matrix<double, 6, 6> hessian = elementStiffness(reference, material.stiffness(), material.thickness, plain).topLeftCorner<6, 6>();
+			const auto gradient = rotation == RotationTreatment::None ? relativeDisplacementGradient<FrameNone>(reference, du)
+			        : rotation == RotationTreatment::Corotational     ? relativeDisplacementGradient<FrameCorotational>(reference, du)
+			                                                          : relativeDisplacementGradient<FrameCosserat>(reference, du);
+			const ElementMatrix   expected = gradient.transpose() * hessian * gradient;
+			const LumpedMass      mass     = material.mass(reference, rotation);
+			const Eigen::VectorXd here     = frequenciesSquared(elementStiffness(reference, material.stiffness(), material.thickness, rotation, du), mass, rotation);
+			const Eigen::VectorXd there    = frequenciesSquared(expected, mass, rotation);
+			EXPECT_LT((here - there).cwiseAbs().maxCoeff(), 1e-8 * there[8]) << name(rotation); // differences are exact to h² = 1e-10
+		}
+}
+
+TEST(FrequencyGrowth, isNeverLessThanWhatTheFrequencyGrowsBy)
+{
+	Random random(42);
+	double closest[2] = { 0, 0 };
+	for (int i = 0; i < 2000; i++)
+		for (const auto rotation : { RotationTreatment::Corotational, RotationTreatment::Cosserat }) {
+			const auto       reference = makeReference(random.skewedTriangle());
+			const Material   material;
+			const LumpedMass mass = material.mass(reference, rotation);
+			const auto       du   = randomStretch(random).of(reference);
+			const auto       own  = [&](const RelativeDisplacements<double>& shape) {
+                                return highestFrequency(reference, material.stiffness(), material.thickness, mass, rotation, shape);
+			};
+			const double rest = own({}), now = own(du), growth = frequencyGrowth(reference, material.stiffness(), material.thickness, mass, rotation, du);
+			EXPECT_LE(now, (rest + growth) * (1 + 1e-12)) << name(rotation);
+			double& best = closest[rotation == RotationTreatment::Cosserat];
+			best         = std::max(best, now / (rest + growth));
+		}
+	EXPECT_GT(closest[0], 0.7); // and is not just large
+	EXPECT_GT(closest[1], 0.7);
+	EXPECT_EQ(frequencyGrowth(makeReference({ { { 0, 0 }, { 2, 0 }, { 0, 1 } } }), { 3, 2, 1 }, 1, { 1, 1, 1 }, RotationTreatment::Cosserat, {}), 0);
+}
+
+/// A free triangle of flawless concrete that has flowed into another shape, so that it is free of stress there; it trembles a little.
+TriangleSystem stretchedTriangle(const Vertices& corners, const Material& material, const Stretch& stretch, RotationTreatment rotation)
+{
+	TriangleSystem system = makeSystem(single(corners), material, rotation);
+	makeConcrete(system, ConcreteParameters(), 0);
+	const RelativeDisplacements<double> du = stretch.of(system.reference(0));
+	for (std::size_t e = 0; e < 3; e++) {
+		const auto v = std::size_t(system.vertex[e][0]);
+		system.node.position[2 * v] += du[e].x;
+		system.node.position[2 * v + 1] += du[e].y;
+	}
+	for (auto& state : system.concreteState)
+		state.plasticStrain = { stretch.xx, stretch.yy, 0, stretch.xy };
+	agitate(system, 1e-9, 1e-9, 5);
+	return system;
+}
+
+double loudestAfter(int steps, TriangleSystem system, double dt)
+{
+	run(system, stepOf(dt), steps);
+	return std::max(largest(system.node.velocity), largest(system.spin.velocity) * 0.1);
+}
+
+TEST(StableStepOfASystem, isSharpForAStretchedTriangle) // leapfrog in the kernel's own element loops, no eigenproblem
+{
+	struct Case {
+		RotationTreatment rotation;
+		Stretch           stretch;
+		double            rotationStiffness; // a stretch that is not the same in all directions strains it
+	};
+	const Vertices corners = { { { 0, 0 }, { 0.011, 0.001 }, { 0.004, 0.009 } } };
+	for (const auto& [rotation, stretch, rotationStiffness] :
+	     { Case { RotationTreatment::Corotational, { 2.5, 1.5, 0.3 }, 2 },
+	       Case { RotationTreatment::Corotational, { 0.9, -0.5, 0.2 }, 2 },
+	       Case { RotationTreatment::Cosserat, { 1.5, 1.5, 0 }, 2 },
+	       Case { RotationTreatment::Cosserat, { -0.5, -0.5, 0 }, 2 },
+	       Case { RotationTreatment::Cosserat, { 3, -0.5, 0.2 }, 0 } }) {
+		Material material;
+		material.rotationStiffness          = rotationStiffness;
+		const auto                reference = makeReference(corners);
+		const std::vector<double> rest { highestFrequency(reference, material.stiffness(), 1, material.mass(reference, rotation), rotation) };
+		const TriangleSystem      system = stretchedTriangle(corners, material, stretch, rotation);
+		const double              step   = stableStep(system, rest, material.vertexShare).step;
+		EXPECT_LT(loudestAfter(3000, system, 0.99 * step), 1e-6) << name(rotation) << ", " << stretch.xx;
+		EXPECT_GT(loudestAfter(100, system, 1.01 * step), 1e-3) << name(rotation) << ", " << stretch.xx; // exp(2 acosh 1.01) = 1.33 in a step
+		if (stretch.xx == 3) {
+			EXPECT_LT(step, 0.75 * 2 / rest[0]); // the bound at rest would not have done
+		}
+	}
+}
+
+TEST(StableStepOfASystem, atRestIsThatOfItsStiffestTriangle)
+{
+	for (const auto rotation : allTreatments) {
+		const Mesh          mesh   = rectangle(4, 6, 0.1, 0.2, 0.2, 9);
+		const Material      material;
+		TriangleSystem      system = makeSystem(mesh, material, rotation);
+		std::vector<double> rest;
+		for (std::size_t i = 0; i < system.triangles(); i++)
+			rest.push_back(highestFrequency(system.reference(i), material.stiffness(), material.thickness, material.mass(system.reference(i), rotation), rotation));
+		const auto   found   = stableStep(system, rest, material.vertexShare);
+		const auto   stiffest = std::max_element(rest.begin(), rest.end());
+		EXPECT_NEAR(found.step, 2 / *stiffest, 1e-12 * found.step);
+		EXPECT_EQ(found.triangle, std::size_t(stiffest - rest.begin()));
+		EXPECT_GE(stableStep(system, rest, material.vertexShare, 0.5 * found.step).step, 0.5 * found.step); // nothing to find below
+	}
+}
+
+TEST(StableStepOfASystem, findsTheOneStretchedTriangleAmongMany)
+{
+	const Mesh          mesh = rectangle(6, 6, 0.06, 0.06, 0.1, 4);
+	const Material      material;
+	TriangleSystem      system = makeSystem(mesh, material, RotationTreatment::Cosserat);
+	std::vector<double> rest;
+	double              expected = INFINITY;
+	system.node.position[2 * 24] += 0.02; // an inner node far away: six triangles are stretched or squeezed
+	for (std::size_t i = 0; i < system.triangles(); i++) {
+		const auto reference = system.reference(i);
+		const auto mass      = material.mass(reference, RotationTreatment::Cosserat);
+		rest.push_back(highestFrequency(reference, material.stiffness(), 1, mass, RotationTreatment::Cosserat));
+		expected = std::min(expected, 2 / highestFrequency(reference, material.stiffness(), 1, mass, RotationTreatment::Cosserat, system.relativeDisplacements(i)));
+	}
+	const auto found = stableStep(system, rest, material.vertexShare);
+	EXPECT_NEAR(found.step, expected, 1e-12 * expected);
+	EXPECT_LT(found.step, 0.9 * 2 / *std::max_element(rest.begin(), rest.end()));
+	EXPECT_EQ(stableStep(system, rest, material.vertexShare, 1.5 * expected).triangle, found.triangle);
 }
 
 } // namespace

@@ -37,10 +37,17 @@ inline double localDamping(double damping, double acceleration, double velocity,
 	return power > 0 ? 1 - damping : (power < 0 ? 1 + damping : 1);
 }
 
+/// Time steps on both sides of the present positions. Velocities live half a step from them, so what accelerates acts for half of each.
+struct StepsAround {
+	double before, after; ///< [s]
+
+	double between() const { return 0.5 * (before + after); }
+};
+
 /// One degree of freedom: returns its new velocity and books its work. inverseMass 0 keeps the velocity.
 template <unsigned effects>
 inline double
-accelerate(double velocity, double force, double external, double gravity, double mass, double inverseMass, const StepSettings& settings, MotionSums& sums)
+accelerate(double velocity, double force, double external, double gravity, double mass, double inverseMass, const StepsAround& dt, double damping, MotionSums& sums)
 {
 	using namespace MotionEffects;
 	double total = force;
@@ -49,26 +56,26 @@ accelerate(double velocity, double force, double external, double gravity, doubl
 	double                  acceleration = total * inverseMass;
 	[[maybe_unused]] double damp         = 0;
 	if constexpr (effects & Damping) {
-		const double scale = localDamping(settings.damping, acceleration, velocity, settings.dt);
+		const double scale = localDamping(damping, acceleration, velocity, dt.between());
 		damp               = (scale - 1) * total;
 		acceleration *= scale;
 	}
-	const double next = velocity + settings.dt * acceleration;
+	const double next = velocity + dt.between() * acceleration;
 	if constexpr (effects & Energy) {
 		const bool                    blocked = inverseMass == 0; // belongs to the outside
-		[[maybe_unused]] const double half    = blocked ? 0 : 0.5 * settings.dt;
-		sums.before.kinetic += blocked ? 0 : 0.5 * mass * velocity * next;
+		[[maybe_unused]] const double before = blocked ? 0 : 0.5 * dt.before, after = blocked ? 0 : 0.5 * dt.after;
+		sums.before.kinetic += blocked ? 0 : 0.5 * mass * velocity * (velocity + dt.before * acceleration); // as if the step had not changed
 		if constexpr (effects & External) {
-			sums.before.externalWork += half * external * velocity;
-			sums.after.externalWork += half * external * next;
+			sums.before.externalWork += before * external * velocity;
+			sums.after.externalWork += after * external * next;
 		}
 		if constexpr (effects & Gravity) {
-			sums.before.gravityWork += half * mass * gravity * velocity;
-			sums.after.gravityWork += half * mass * gravity * next;
+			sums.before.gravityWork += before * mass * gravity * velocity;
+			sums.after.gravityWork += after * mass * gravity * next;
 		}
 		if constexpr (effects & Damping) {
-			sums.before.dampingLoss -= half * damp * velocity;
-			sums.after.dampingLoss -= half * damp * next;
+			sums.before.dampingLoss -= before * damp * velocity;
+			sums.after.dampingLoss -= after * damp * next;
 		}
 	}
 	return next;
@@ -89,11 +96,13 @@ inline double sumOfSquares(const double* values, std::size_t n)
 
 // Sums are kept in a local variable during a loop: no array can alias it, so it stays in registers.
 
-template <unsigned effects> void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSettings& settings, MotionSums& sums)
+template <unsigned effects>
+void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps, MotionSums& sums)
 {
 	const bool         external      = (effects & MotionEffects::External) && !points.external.empty();
-	const StepSettings step          = settings;
-	const double       g[2]          = { step.gravity.x, step.gravity.y };
+	const StepsAround  dt            = steps;
+	const double       damping       = settings.damping;
+	const double       g[2]          = { settings.gravity.x, settings.gravity.y };
 	double* __restrict position      = points.position.data();
 	double* __restrict velocity      = points.velocity.data();
 	const double* __restrict force   = points.force.data();
@@ -104,19 +113,21 @@ template <unsigned effects> void movePoints(Points& points, std::size_t begin, s
 		for (std::size_t c = 0; c < 2; c++) {
 			const std::size_t i = 2 * p + c;
 			const double      next
-			        = accelerate<effects>(velocity[i], force[i], external ? points.external[i] : 0., g[c], mass[p], inverse[i], step, local);
+			        = accelerate<effects>(velocity[i], force[i], external ? points.external[i] : 0., g[c], mass[p], inverse[i], dt, damping, local);
 			velocity[i] = next;
-			position[i] += step.dt * next;
+			position[i] += dt.after * next;
 		}
 	local.speedSquared = sumOfSquares(velocity + 2 * begin, 2 * (end - begin));
 	sums += local;
 }
 
-template <unsigned effects> void moveSpins(Spins& spins, std::size_t begin, std::size_t end, const StepSettings& settings, MotionSums& sums)
+template <unsigned effects>
+void moveSpins(Spins& spins, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps, MotionSums& sums)
 {
 	constexpr unsigned here          = effects & ~unsigned(MotionEffects::Gravity); // gravity has no moment about the mass centre
 	const bool         external      = (effects & MotionEffects::External) && !spins.external.empty();
-	const StepSettings step          = settings;
+	const StepsAround  dt            = steps;
+	const double       damping       = settings.damping;
 	double* __restrict angle         = spins.angle.data();
 	double* __restrict velocity      = spins.velocity.data();
 	const double* __restrict moment  = spins.moment.data();
@@ -124,9 +135,9 @@ template <unsigned effects> void moveSpins(Spins& spins, std::size_t begin, std:
 	const double* __restrict inertia = spins.inertia.data();
 	MotionSums local;
 	for (std::size_t i = begin; i < end; i++) {
-		const double next = accelerate<here>(velocity[i], moment[i], external ? spins.external[i] : 0., 0., inertia[i], inverse[i], step, local);
+		const double next = accelerate<here>(velocity[i], moment[i], external ? spins.external[i] : 0., 0., inertia[i], inverse[i], dt, damping, local);
 		velocity[i]       = next;
-		angle[i] += step.dt * next;
+		angle[i] += dt.after * next;
 	}
 	local.speedSquared = sumOfSquares(velocity + begin, end - begin);
 	sums += local;

@@ -18,16 +18,45 @@ struct TriangleStiffness {
 using ElementMatrix = Eigen::Matrix<double, 9, 9>;
 using ElementVector = Eigen::Matrix<double, 9, 1>;
 
-/// Tangent stiffness at rest [N/m, N, N·m]; unknowns: displacement of vertex 1, 2, 3, of the core, rotation of the core (zero row where cores do not rotate).
-ElementMatrix elementStiffness(const TriangleReference<double>& reference, const TriangleStiffness& stiffness, double thickness, RotationTreatment rotation);
+/** Tangent stiffness in the element's frame [N/m, N, N·m]; unknowns: displacement of vertex 1, 2, 3, of the core, rotation of the core (zero row where cores do not rotate).
+ * \param du relative displacements Δu_e of the shape it has now [m]: the arms r_e + Δu_e by which a rotation moves the vertices grow with the element. Stress enters by
+ * the material alone; the geometric part, of the order of stress over modulus, is left out.
+ */
+ElementMatrix elementStiffness(
+        const TriangleReference<double>&     reference,
+        const TriangleStiffness&             stiffness,
+        double                               thickness,
+        RotationTreatment                    rotation,
+        const RelativeDisplacements<double>& du = {});
 
 /// The diagonal of the mass matrix of the same unknowns [kg, kg·m²].
 ElementVector elementMass(const LumpedMass& mass);
 
 /** Largest circular frequency of the free element [rad/s].
  * A node's mass is the sum of the shares of its triangles, so no mesh of such triangles has a higher one (Irons and Treharne 1971): 2/ω is a rigorous bound on
- * the time step of leapfrog, without an eigenproblem of the whole mesh. The bound holds about the unstressed state; stress σ shifts it by about σ/(2E).
+ * the time step of leapfrog, without an eigenproblem of the whole mesh, about a state without stress; stress σ shifts it by about σ/(2E).
+ * \param du relative displacements of the shape it has now [m]
  */
-double highestFrequency(const TriangleReference<double>& reference, const TriangleStiffness& stiffness, double thickness, const LumpedMass& mass, RotationTreatment rotation);
+double highestFrequency(
+        const TriangleReference<double>&     reference,
+        const TriangleStiffness&             stiffness,
+        double                               thickness,
+        const LumpedMass&                    mass,
+        RotationTreatment                    rotation,
+        const RelativeDisplacements<double>& du = {});
+
+/** By how much the element's highest frequency can have grown since rest at most [rad/s]; no eigenproblem.
+ *
+ * A rotation by φ turns the vertices of the deformed element by φ e_z × (r_e + Δu_e). The first part is rigid; the second is a strain of its own, which adds at most
+ * √(2U/J)|φ|√J to the norm √(xᵀKx) ≤ ω_rest √(xᵀMx), U being the energy of the displacements e_z × Δu_e. So ω ≤ ω_rest + √(2U/J). With the corotational frame the
+ * angle follows the vertices, φ = Σ a_e·u_e, and Σ|a_e|²/m_e takes the place of 1/J.
+ */
+double frequencyGrowth(
+        const TriangleReference<double>&     reference,
+        const TriangleStiffness&             stiffness,
+        double                               thickness,
+        const LumpedMass&                    mass,
+        RotationTreatment                    rotation,
+        const RelativeDisplacements<double>& du);
 
 } // namespace yade::ddem

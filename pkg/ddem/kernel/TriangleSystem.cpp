@@ -19,8 +19,8 @@ namespace {
 	// Sizes of the pieces that threads share out; fixed, so that sums do not depend on the number of threads. Element pieces fit the level-2 cache.
 	constexpr std::size_t trianglesPerChunk = 256, nodesPerChunk = 1024;
 
-	using MovePoints = void (*)(Points&, std::size_t, std::size_t, const StepSettings&, MotionSums&);
-	using MoveSpins  = void (*)(Spins&, std::size_t, std::size_t, const StepSettings&, MotionSums&);
+	using MovePoints = void (*)(Points&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
+	using MoveSpins  = void (*)(Spins&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
 
 	struct Motion {
 		MovePoints points;
@@ -62,12 +62,12 @@ namespace {
 
 	/// Work done on the system by what prescribes velocities: the reaction is minus the internal force. The trailing half step used the last velocity.
 	void bookReactions(
-	        std::vector<Constraint>& list, const std::vector<double>& velocity, const std::vector<double>& force, double dt, double& before, double& after)
+	        std::vector<Constraint>& list, const std::vector<double>& velocity, const std::vector<double>& force, const StepsAround& dt, double& before, double& after)
 	{
 		for (auto& c : list) {
-			before -= 0.5 * dt * force[c.index] * c.velocity;
+			before -= 0.5 * dt.before * force[c.index] * c.velocity;
 			c.velocity = velocity[c.index];
-			after -= 0.5 * dt * force[c.index] * c.velocity;
+			after -= 0.5 * dt.after * force[c.index] * c.velocity;
 		}
 	}
 
@@ -166,6 +166,7 @@ void TriangleSystem::collectConstraints()
 StepEnergy TriangleSystem::step(const StepSettings& settings)
 {
 	const std::size_t n = triangles(), nodeChunks = (node.size() + nodesPerChunk - 1) / nodesPerChunk;
+	const StepsAround steps { lastTimeStep > 0 ? lastTimeStep : settings.dt, settings.dt };
 	const Motion      move = selectMotion(MotionEffects::select(settings), std::make_integer_sequence<unsigned, MotionEffects::Combinations>());
 
 	ElementArrays arrays {};
@@ -211,8 +212,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 			}
 			MotionSums& sum = sums[std::size_t(j)];
 			loops[piece.group].loop(own, g, piece.begin, piece.end, sum.before);
-			move.points(core, piece.begin, piece.end, settings, sum); // a core feels only its own triangle
-			if (rotates) move.spins(spin, piece.begin, piece.end, settings, sum);
+			move.points(core, piece.begin, piece.end, settings, steps, sum); // a core feels only its own triangle
+			if (rotates) move.spins(spin, piece.begin, piece.end, settings, steps, sum);
 		}
 #pragma omp for schedule(static)
 		for (std::ptrdiff_t j = 0; j < allNodeChunks; j++) {
@@ -227,10 +228,11 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 				node.force[2 * v]     = x;
 				node.force[2 * v + 1] = y;
 			}
-			move.points(node, begin, end, settings, sums[chunk.size() + std::size_t(j)]);
+			move.points(node, begin, end, settings, steps, sums[chunk.size() + std::size_t(j)]);
 		}
 	}
 
+	lastTimeStep = settings.dt;
 	StepEnergy energy;
 	double     speedSquared = 0;
 	for (const auto& sum : sums)
@@ -245,9 +247,9 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 			energy += sum.before;
 			pending += sum.after;
 		}
-		bookReactions(nodeConstraint, node.velocity, node.force, settings.dt, energy.externalWork, pending.externalWork);
-		bookReactions(coreConstraint, core.velocity, core.force, settings.dt, energy.externalWork, pending.externalWork);
-		bookReactions(spinConstraint, spin.velocity, spin.moment, settings.dt, energy.externalWork, pending.externalWork);
+		bookReactions(nodeConstraint, node.velocity, node.force, steps, energy.externalWork, pending.externalWork);
+		bookReactions(coreConstraint, core.velocity, core.force, steps, energy.externalWork, pending.externalWork);
+		bookReactions(spinConstraint, spin.velocity, spin.moment, steps, energy.externalWork, pending.externalWork);
 	} else
 		pending = StepEnergy(); // works of a step without the book are not known
 	return energy;
@@ -345,15 +347,20 @@ std::array<double, 3> TriangleSystem::subElementDamage(std::size_t i) const
 	return result;
 }
 
-std::array<PlaneTensor, 3> TriangleSystem::strain(std::size_t i) const
+RelativeDisplacements<double> TriangleSystem::relativeDisplacements(std::size_t i) const
 {
 	const TriangleReference<double> ref  = reference(i);
 	const Rotation<double>          turn = frame(i);
 	RelativeDisplacements<double>   du   = fromCentre(i);
 	for (std::size_t e = 0; e < 3; e++)
 		du[e] = relativeDisplacement(turn, du[e], ref.arm[e]);
+	return du;
+}
+
+std::array<PlaneTensor, 3> TriangleSystem::strain(std::size_t i) const
+{
 	std::array<PlaneTensor, 3> result {};
-	const auto                 strains = subElementStrains(ref, du);
+	const auto                 strains = subElementStrains(reference(i), relativeDisplacements(i));
 	for (std::size_t k = 0; k < 3; k++)
 		result[k] = { strains[k].xx, strains[k].yy, 0, strains[k].xy };
 	return result;

@@ -43,7 +43,7 @@ struct StepSettings {
 };
 
 /** Energies of one step [J]. Works are what forces did up to the instant of the positions the step started from; kinetic energy is the leapfrog's conserved
- * product ½ m v(n−½)·v(n+½), which together with the elastic energy is constant to round-off in a linear system. */
+ * product ½ m v(n−½)·v(n+½), which together with the elastic energy is constant to round-off in a linear system while the time step is. */
 struct StepEnergy {
 	double kinetic = 0, elastic = 0, rotation = 0, plastic = 0, damage = 0;
 	double gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< increments since the last step
@@ -95,7 +95,8 @@ struct Constraint {
 /** State of all deformable triangles, owner of their motion.
  *
  * A step computes element forces at the current positions and then moves cores and nodes by leapfrog, with the scheme of NewtonIntegrator (velocities live at
- * half steps). Forces on a node are gathered from its triangles' corners in a fixed order, so results do not depend on the number of threads, bit by bit.
+ * half steps); where the step changes, forces act for half of the last and half of the next, which keeps it of second order. Forces on a node are gathered from its
+ * triangles' corners in a fixed order, so results do not depend on the number of threads, bit by bit.
  */
 class TriangleSystem {
 public:
@@ -111,6 +112,7 @@ public:
 	Points                     node, core;
 	Spins                      spin;          ///< of the cores; empty unless they rotate
 	std::vector<ConcreteState> concreteState; ///< 3 per concrete triangle
+	double                     lastTimeStep = 0; ///< of the last step [s]; velocities are half of it before the positions. 0: equal to the next
 
 	std::size_t triangles() const { return vertex[0].size(); }
 	void        addTriangle(const std::array<std::int32_t, 3>& nodes, const TriangleReference<double>& reference);
@@ -144,6 +146,8 @@ public:
 	Place firstNotFinite() const;
 
 	TriangleReference<double> reference(std::size_t triangle) const;
+	/// Δu_e of the vertices in the element's frame at the current positions [m].
+	RelativeDisplacements<double> relativeDisplacements(std::size_t triangle) const;
 	/// Stress of the three sub-elements in the element's frame [Pa]: at the current positions (elastic), of the last step (concrete).
 	std::array<PlaneTensor, 3> stress(std::size_t triangle) const;
 	/// Strain of the three sub-elements in the element's frame at the current positions [-].
