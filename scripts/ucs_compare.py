@@ -89,7 +89,7 @@ def deformable_test(options):
 	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, options.size, pattern=options.mesh, regions=regions, **extra)
 	block = ddem.append(mesh, {"": "concrete", **dict.fromkeys(regions, "steel")}, seed=options.seed, thickness=options.depth)
 	platens = ddem.platens(block, options.velocity, options.ramp, lateral="fixed" if options.ends == "rough" else "free", both=options.drive == "both")
-	O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=options.rotation, label="triangles")]
+	O.engines = [ForceResetter(), *platens.engines, DeformableTimeStepper(safety=options.safety), DeformableEngine(rotation=options.rotation, label="triangles")]
 	critical = O.engines[-1].criticalTimeStep()
 	O.dt = options.safety * critical
 	quality = f"{options.mesh} mesh of size {1e3 * options.size:g} mm, {number(len(mesh.nodes))} nodes, smallest angle {mesh.angles.min():.0f}°"

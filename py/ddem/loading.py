@@ -77,7 +77,7 @@ def _drive(ids, velocity, ramp):
 
 
 def run(until=None, steps=None, progress=True):
-	"""O.run with a progress bar and checks beforehand; plain O.run works as well.
+	"""O.run with a progress bar and checks beforehand; plain O.run works as well. The time step may change on the way (:yref:`DeformableTimeStepper`).
 
 	A run that something else ends, such as O.pause() in a PyRunner, ends here as well.
 
@@ -94,15 +94,15 @@ def run(until=None, steps=None, progress=True):
 	if steps is None:
 		if not O.time <= until < math.inf:
 			raise ValueError(f"until = {until} s must not lie before the present time, {O.time} s; for a number of steps give steps=")
-		steps = math.ceil((until - O.time) / O.dt - 1e-9)
 	elif not (isinstance(steps, numbers.Integral) and steps >= 0):
 		raise ValueError(f"steps = {steps!r} must be a whole number, 0 or more")
 	_require_engine()
-	bar = tqdm(total=steps, unit="step", disable=None if progress else True)
-	end, piece = O.iter + steps, 1
-	with bar:
-		while O.iter < end:
-			begin, target, clock = O.iter, min(O.iter + piece, end), time.perf_counter()
+	first, piece = O.iter, 1
+	left = lambda: first + steps - O.iter if until is None else math.ceil((until - O.time) / O.dt - 1e-9)
+	with tqdm(total=left(), unit="step", disable=None if progress else True) as bar:
+		while left() > 0:
+			bar.total = O.iter - first + left()
+			begin, target, clock = O.iter, O.iter + min(piece, left()), time.perf_counter()
 			if piece == 1:
 				O.step()  # O.run would miss an error that comes before it starts to wait
 			else:

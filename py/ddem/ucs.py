@@ -112,6 +112,7 @@ class CompressionTest:
 		steps = max(1, round(self.duration / O.dt))
 		period = max(1, steps // self.longest)
 		self._held = max(2, round(_HELD * steps / period))
+		self._end, self._dt = O.time + self.duration, O.dt
 		self.specimen.prepare()
 		self.book = EnergyBalance()
 		recorder = "__import__('yade.ddem.ucs', fromlist=['running']).running.record()"
@@ -123,7 +124,7 @@ class CompressionTest:
 		start, busy = time.perf_counter(), time.process_time()
 		try:
 			with tqdm(total=steps, unit="step", desc=self.specimen.title, mininterval=0.5, disable=None if progress else True) as self._bar:
-				loading.run(steps=steps, progress=False)
+				loading.run(until=self._end, progress=False)  # in time, since a time stepper may change O.dt
 		finally:
 			running = None
 		wall, busy = time.perf_counter() - start, time.process_time() - busy
@@ -149,7 +150,9 @@ class CompressionTest:
 		if self.stop and len(self.rows) > self._held and (stress < self.stop * self._peak).all():
 			self.stopped = f"stress stayed below {100 * self.stop:g} % of the peak"
 			O.pause()
-		self._bar.update(O.iter - self._first - self._bar.n)
+		done = O.iter - self._first
+		self._bar.total = done + max(0, round((self._end - O.time) / O.dt))
+		self._bar.update(done - self._bar.n)
 		self._bar.set_postfix_str(f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False)
 
 	def _look(self, files):
@@ -170,7 +173,7 @@ class CompressionTest:
 		specimen = self.specimen
 		return Run(
 			model=specimen.model, title=specimen.title, particle=specimen.particle, particles=specimen.particles,
-			degrees_of_freedom=specimen.degrees_of_freedom, dt=O.dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
+			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
 			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(), test=self.kind, broken=specimen.broken
 		)

@@ -195,14 +195,14 @@ def _rigid(setup, values, seed, velocity, cache):
 
 
 def _deformable(setup, values, seed, velocity, _):
-	from yade import DeformableEngine, ForceResetter, O, ddem
+	from yade import DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
 	made = material("deformable", values, setup.density)
 	O.materials.append(made)
 	extra = {"seed": seed} if setup.mesh == "unstructured" else {}
 	mesh = ddem.mesh.rectangle(setup.width, setup.height, setup.size, pattern=setup.mesh, **extra)
 	block = ddem.append(mesh, made, seed=seed, thickness=setup.depth)
 	platens = ddem.platens(block, velocity, setup.ramp, lateral="fixed" if setup.rough else "free", both=True)
-	O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=setup.rotation)]
+	O.engines = [ForceResetter(), *platens.engines, DeformableTimeStepper(safety=setup.safety), DeformableEngine(rotation=setup.rotation)]
 	return platens, O.engines[-1].criticalTimeStep()
 
 
