@@ -64,6 +64,8 @@ def test_nodal_loads_keep_force_and_moment():
 	assert loads.sum(axis=0) == pytest.approx([3e6 * 0.1**2 / 2, 1])
 	assert (mesh.nodes[:, 1] * loads[:, 0]).sum() == pytest.approx(3e6 * 0.1**3 / 3)
 	assert not loads[mesh.nodes[:, 0] < 0.2 - 1e-9].any()
+	with pytest.raises(ValueError, match="none of the .* border edges; the mesh spans x 0 to 0.2 m, y 0 to 0.1 m"):
+		statics.nodal_loads(mesh, lambda x, y: x > 1, traction)
 
 
 def test_recovered_stress_is_exact_for_quadratics():

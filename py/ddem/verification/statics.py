@@ -38,10 +38,13 @@ def nodal_loads(mesh, where, traction, points=8):
 	:param where: says which border edges carry it, from the arrays x, y [m] of their middles
 	:param traction: (points, outer normals), both (…, 2), -> (…, 2) [Pa]
 	:param points: of Gauss–Legendre integration on each edge
+	:raises ValueError: no border edge carries it
 	"""
 	edges = mesh.boundary_edges()
 	a, b = mesh.nodes[edges[:, 0]], mesh.nodes[edges[:, 1]]
 	chosen = where(*(0.5 * (a + b)).T)
+	if not np.any(chosen):
+		raise ValueError(f"where() chooses none of the {len(edges)} border edges; the mesh spans x {_span(mesh, 0)}, y {_span(mesh, 1)}")
 	edges, a, b = edges[chosen], a[chosen], b[chosen]
 	along, weights = np.polynomial.legendre.leggauss(points)
 	part = 0.5 * (1 + along)[:, None, None]
@@ -52,6 +55,10 @@ def nodal_loads(mesh, where, traction, points=8):
 	np.add.at(loads, edges[:, 0], ((1 - part) * forces).sum(axis=0))
 	np.add.at(loads, edges[:, 1], (part * forces).sum(axis=0))
 	return loads
+
+
+def _span(mesh, axis):
+	return f"{mesh.nodes[:, axis].min():g} to {mesh.nodes[:, axis].max():g} m"
 
 
 def solve_and_balance(mesh, material, loads, held):

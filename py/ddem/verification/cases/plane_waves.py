@@ -113,7 +113,7 @@ def rebar_reflection(check, size=0.004, ramp=10e-6):
 
 		σ_r/σ_i = (Z₂ − Z₁)/(Z₂ + Z₁),   σ_t/σ_i = 2 Z₂/(Z₂ + Z₁)
 
-	Reference: continuity of stress and velocity at the interface (Graff, Wave Motion in Elastic Solids, 1975, § 2.1). Moduli of concrete and 304L: Zubelewicz
+	Reference: continuity of stress and velocity at the interface (Graff, Wave Motion in Elastic Solids, 1975, § 2.2). Moduli of concrete and 304L: Zubelewicz
 	(2018).
 
 	Expect: both within 1e-4, averaged over the plateaus.
@@ -136,8 +136,8 @@ def rebar_reflection(check, size=0.004, ramp=10e-6):
 	on = mean(LENGTH / 2 + 0.2 * front * c2 / c1, LENGTH / 2 + 0.8 * front * c2 / c1)
 	plateau = LENGTH / 2 - front - c1 * ramp  # what the reflected wave has not yet reached
 	check("stress of the incident wave [Pa]", mean(0.2 * plateau, 0.8 * plateau), incident, 1e-4, "momentum: ρ c v")
-	check("reflected part σ_r/σ_i [-]", back / incident, (z2 - z1) / (z2 + z1), 1e-4, "Graff (1975), § 2.1")
-	check("transmitted part σ_t/σ_i [-]", on / incident, 2 * z2 / (z2 + z1), 1e-4, "Graff (1975), § 2.1")
+	check("reflected part σ_r/σ_i [-]", back / incident, (z2 - z1) / (z2 + z1), 1e-4, "Graff (1975), § 2.2")
+	check("transmitted part σ_t/σ_i [-]", on / incident, 2 * z2 / (z2 + z1), 1e-4, "Graff (1975), § 2.2")
 	time = O.time
 
 	def draw():
