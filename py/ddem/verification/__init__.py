@@ -15,7 +15,7 @@ found by itself). It reads like an example::
 	def settling(check, size=0.01):
 		\"\"\"A column settles under its own weight
 
-		The sides are free, the bottom slides on rollers: σ_yy = −ρ g (H − y), and nothing else.
+		The sides are free, the bottom slides on rollers: σ_yy = −ρ g (H − y), and away from the bottom nothing else.
 
 		Reference: equilibrium of the part above y; any textbook, Timoshenko and Goodier (1970), art. 96.
 
