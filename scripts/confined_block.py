@@ -17,14 +17,11 @@ Expect:   with smooth ends the strengths of a material point, 63, 148, 224 and 2
           be set moving (0.1 MPa with --velocity 0.25). Rough ends add 5 to 7 MPa. The stress left after the peak grows with the pressure; damage is in two
           crossing bands that leave wedges at the ends whole.
 """
-import argparse
+import math
 import os
-
-import numpy as np
 
 from yade import O
 from yade.ddem import commandline, plots, vtk
-from yade.ddem.series import Series
 from yade.ddem.structures import confined, confined_figures
 
 
@@ -41,10 +38,7 @@ def main():
 			recorders = [lambda block: vtk.Recorder(block, name)] if options.vtk and ends == "rough" else []
 			one = confined.run(pressure, ends, seed, options.size, options.mesh, options.velocity, options.strain, recorders=recorders)
 			tests[ends].append(one)
-			series = Series(strain="-", stress="Pa")
-			for strain, stress in zip(one.strain, one.stress):
-				series.append(strain=strain, stress=stress)
-			series.write(f"{name}-{ends}.csv")
+			one.series.write(f"{name}-{ends}.csv")
 			print(
 				f"{pressure / 1e6:>16g}{ends:>8}{one.peak[0] / 1e6:>10.1f}{100 * one.peak[1]:>11.2f}{point.max() / 1e6:>10.1f}{one.stress[-1] / 1e6:>10.1f}"
 				f"{one.damage.mean():>8.2f}{one.energy_error:>14.0e}", flush=True
@@ -55,26 +49,20 @@ def main():
 
 def read_options():
 	"""Options from the command line; complains about them before anything runs."""
-	parser = argparse.ArgumentParser(
-		prog="scripts/ddem run scripts/confined_block.py", usage="%(prog)s [options]", description="Crush a block under lateral pressure.",
-		formatter_class=argparse.ArgumentDefaultsHelpFormatter, allow_abbrev=False
-	)
+	parser = commandline.script_parser("confined_block", "Crush a block under lateral pressure.")
 	parser.add_argument("--pressures", type=float, nargs="+", default=(0.0, 20e6, 40e6, 60e6), metavar="PA", help="on the sides [Pa]; four of them are drawn")
-	parser.add_argument("--velocity", type=float, default=1.0, metavar="M/S", help="of each platen [m/s]")
-	parser.add_argument("--strain", type=float, default=0.012, metavar="E", help="at which a test ends [-]")
-	parser.add_argument("--seed", type=int, default=1, help="draws the fracture energies of the blocks with rough ends")
+	parser.add_argument("--velocity", type=float, default=0.5, metavar="M/S", help="of each platen [m/s]")
+	parser.add_argument("--strain", type=float, default=0.01, metavar="E", help="at which a test ends [-]")
+	parser.add_argument("--seed", type=int, default=1, metavar="N", help="draws the fracture energies of the blocks with rough ends")
 	parser.add_argument("--size", type=float, default=0.01, metavar="M", help="of the cells [m]")
 	parser.add_argument("--mesh", choices=("crossed", "alternating", "unstructured"), default="crossed", help="pattern of the mesh")
-	parser.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files of the blocks with rough ends")
-	parser.add_argument("--out", default=os.path.join("out", "confined_block"), metavar="DIR", help="folder for all files, made when missing")
+	commandline.add_files(parser, "confined_block", "ParaView files of the blocks with rough ends")
 	options = parser.parse_args()
 	for name, values, low, high in (
-		("--pressures", options.pressures, 0, 1e9), ("--velocity", [options.velocity], 1e-3, 100), ("--strain", [options.strain], 1e-4, 0.1),
-		("--size", [options.size], 1e-4, confined.WIDTH / 4), ("--seed", [options.seed], 0, np.inf)
+		("--pressures", options.pressures, 0, 1e9), ("--velocity", options.velocity, 1e-3, 100), ("--strain", options.strain, 1e-4, 0.1),
+		("--size", options.size, 1e-4, confined.WIDTH / 4), ("--seed", options.seed, 0, math.inf)
 	):
-		for value in values:
-			if not low <= value <= high:
-				parser.error(f"argument {name}: {value:g} must lie between {low:g} and {high:g}")
+		commandline.require_between(parser, name, values, low, high)
 	commandline.require_writable(parser, "--out", options.out)
 	return options
 

@@ -15,7 +15,6 @@ Expect:   the elastic bar returns the pulse whole: Novikov's ½ ρ c Δu_fs give
           Of the 38, 29 belong to the fall between the two characteristics through the largest tension, and 10 of these are flow on the way (29 − 10 = 19); the other
           9 come later, from a wide zone that flows and pulls. The brittler, the closer: 6.5 and 5.6 MPa with --energy 1e3 --speed 4.
 """
-import argparse
 import os
 
 import numpy as np
@@ -33,10 +32,8 @@ def main():
 	O.reset()
 	recorders = [lambda block: vtk.Recorder(block, os.path.join(options.out, "bar"))] if options.vtk else []
 	broken = spall.run(effects={"fractureEnergy": options.energy}, recorders=recorders, **settings)
-	series = Series(time="s", concrete="m/s", elastic="m/s")
-	for row in zip(broken.times, broken.surface, elastic.surface):
-		series.append(**dict(zip(series.units, row)))
-	series.write(os.path.join(options.out, "free_end.csv"))
+	units = {"time": "s", "concrete": "m/s", "elastic": "m/s"}
+	Series.of(units, time=broken.times, concrete=broken.surface, elastic=elastic.surface).write(os.path.join(options.out, "free_end.csv"))
 	plots.save(spall_figures.history(broken, elastic), os.path.join(options.out, "spall.png"))
 	print(f"\n{'':<48}{'elastic':>12}{'concrete':>12}")
 	for name, text in (
@@ -59,17 +56,13 @@ def main():
 
 def read_options():
 	"""Options from the command line; complains about them before anything runs."""
-	parser = argparse.ArgumentParser(
-		prog="scripts/ddem run scripts/spall_bar.py", usage="%(prog)s [options]", description="Break a bar by its own reflected wave.",
-		formatter_class=argparse.ArgumentDefaultsHelpFormatter, allow_abbrev=False
-	)
+	parser = commandline.script_parser("spall_bar", "Break a bar by its own reflected wave.")
 	parser.add_argument("--speed", type=float, default=8.0, metavar="M/S", help="largest speed of the driven end; the pulse has the stress ρ c times that")
 	parser.add_argument("--duration", type=float, default=40e-6, metavar="S", help="of the pulse [s]")
 	parser.add_argument("--energy", type=float, default=80e3, metavar="J/M3", help="fracture energy per volume [J/m³]")
 	parser.add_argument("--length", type=float, default=0.4, metavar="M", help="of the bar [m]")
 	parser.add_argument("--size", type=float, default=0.004, metavar="M", help="of the cells [m]")
-	parser.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
-	parser.add_argument("--out", default=os.path.join("out", "spall_bar"), metavar="DIR", help="folder for all files, made when missing")
+	commandline.add_files(parser, "spall_bar", "ParaView files of the bar of concrete")
 	options = parser.parse_args()
 	for name in ("speed", "duration", "energy", "length", "size"):
 		if not 0 < getattr(options, name) < np.inf:

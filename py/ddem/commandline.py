@@ -10,6 +10,8 @@ import shutil
 import sys
 import tempfile
 
+import numpy as np
+
 import yade.config
 from yade import O
 
@@ -56,6 +58,27 @@ def seed(text):
 	if value < 0:
 		raise argparse.ArgumentTypeError(f"{text} must not be negative")
 	return value
+
+
+def script_parser(name, description):
+	"""Parser of scripts/*name*.py, in whose help every option has its default."""
+	return argparse.ArgumentParser(
+		prog=f"scripts/ddem run scripts/{name}.py", usage="%(prog)s [options]", description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+		allow_abbrev=False
+	)
+
+
+def add_files(parser, name, what="ParaView files"):
+	"""Add the options --vtk, of which *what* says what it writes, and --out, by default out/*name*."""
+	parser.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help=what)
+	parser.add_argument("--out", default=os.path.join("out", name), metavar="DIR", help="folder for all files, made when missing")
+
+
+def require_between(parser, option, values, low, high):
+	"""Complain about an option with a value (or a value in a sequence) out of bounds."""
+	for value in np.atleast_1d(values):
+		if not low <= value <= high:
+			parser.error(f"argument {option}: {value:g} must " + (f"lie between {low:g} and {high:g}" if high < math.inf else f"be at least {low:g}"))
 
 
 def require_writable(parser, option, folder):

@@ -24,6 +24,14 @@ class Series:
 		self.units = dict(units)  #: unit by column, in order
 		self._rows = []
 
+	@classmethod
+	def of(cls, units, **columns):
+		"""A series of whole columns: ``Series.of({"time": "s"}, time=times)``."""
+		series = cls(**units)
+		for row in zip(*columns.values(), strict=True):
+			series.append(**dict(zip(columns, row)))
+		return series
+
 	def __len__(self):
 		return len(self._rows)
 

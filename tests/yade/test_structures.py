@@ -71,9 +71,29 @@ def test_crack_is_where_the_damage_is():
 	line = beam.LENGTH / 2 + 0.3 * (y - beam.NOTCH)
 	damage = np.repeat(((np.abs(x - line) < 0.01) & (y > beam.NOTCH) & (y < 0.08)).astype(float)[:, None], 3, axis=1)
 	none = np.zeros(2)
-	heights, places = beam.History(mesh, none, none, none, none, mesh.nodes, damage, 0).crack()
+	heights, places = beam.History(mesh, none, none, none, none, none, none, mesh.nodes, damage, 0).crack()
 	assert heights.max() < 0.085 and len(heights) >= 6
 	assert np.abs(places - (beam.LENGTH / 2 + 0.3 * (heights - beam.NOTCH))).max() < 0.01  # within a triangle
+
+
+def test_bands_are_found_under_their_angles():
+	mesh = ddem.mesh.rectangle(confined.WIDTH, confined.HEIGHT, 0.005)
+	x, y = (mesh.centroids - (confined.WIDTH / 2, confined.HEIGHT / 2)).T
+	band = lambda angle: np.abs(y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))) < 0.008
+	damage = np.repeat((band(52) | band(-67)).astype(float)[:, None], 3, axis=1)
+	none = np.zeros(2)
+	(right, _), (left, _) = confined.History(mesh, 0.0, 1.0, none, none, mesh.nodes, damage, 0.0, 0.0).bands()
+	assert (right, left) == (pytest.approx(52, abs=2), pytest.approx(67, abs=2))
+	((_, alone), _) = confined.History(mesh, 0.0, 1.0, none, none, mesh.nodes, np.repeat(band(60).astype(float)[:, None], 3, axis=1), 0.0, 0.0).bands()
+	assert 0.5 < alone <= 1
+
+
+def test_handbook_formulas_of_the_notched_beam():
+	# a/W = 0.3, S/W = 4: V₁ = 1.7162, f = 1.5212 by the polynomials of Tada, Paris and Irwin (1985) and of ASTM E399
+	modulus = 60.517e9 / (1 - 0.16379**2)  # E = 9 B μ/(3 B + μ), ν = (3 B − 2 μ)/(6 B + 2 μ)
+	assert beam.opening_compliance() == pytest.approx(4 * 60 * 0.03 * 1.7162 / modulus, rel=1e-3)
+	assert beam.toughness_strength(100) == pytest.approx(np.sqrt(100 * modulus) * 0.1**1.5 / (0.4 * 1.5212), rel=1e-3)
+	assert beam.bending_strength(6e6) == pytest.approx(6e6 * 0.07**2 / 6 * 10)
 
 
 def test_bar_is_the_same_on_every_fitting_mesh():

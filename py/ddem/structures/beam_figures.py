@@ -17,11 +17,13 @@ def bending(beams, shown, scale=20):
 			for number, size in enumerate(sizes):
 				one = beams[corrected, size]
 				ax.plot(1e3 * one.deflection, one.force / 1e3, color=plots.COLOURS[number], label=f"{1e3 * size:g} mm")
+				ax.plot(1e3 * one.deflection, one.reaction / 1e3, color=plots.COLOURS[number], linewidth=0.4)
 			ax.set_title("$G_f$ with crack band" if corrected else "$G_f$ per volume")
 			ax.set_xlabel("deflection [mm]")
-			ax.set_ylim(0, 1.15 * max(one.force.max() for one in beams.values()) / 1e3)
+			ax.set_ylim(0, 1.25 * max(one.force.max() for one in beams.values()) / 1e3)
 			ax.spines[["top", "right"]].set_visible(False)
-		places[False].set_ylabel("force per thickness [kN/m]")
+		places[False].set_ylabel("load per thickness [kN/m]")
+		places[False].plot([], [], "k", linewidth=0.4, label="supports")
 		places[False].legend(title="size")
 		one, ax = beams[shown], places["map"]
 		plots.field(one.mesh, one.damage, "damage $\\eta/\\eta_{max}$ [-]", ax=ax, displacement=one.nodes - one.mesh.nodes, scale=scale, limits=(0, 1))

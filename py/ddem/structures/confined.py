@@ -6,6 +6,9 @@ import numpy as np
 
 from yade import ConcreteDamageMat, DeformableEngine, ForceResetter, InterpolatingDirectedForceEngine, O, ddem
 
+from ..series import Series
+from .stepping import advance
+
 WIDTH, HEIGHT = 0.10, 0.20  # [m]
 PRESSING, RAMP = 2e-4, 2e-4  #: time over which the pressure grows, and the speed of the platens [s]
 
@@ -29,8 +32,36 @@ class History:
 		row = int(self.stress.argmax())
 		return float(self.stress[row]), float(self.strain[row])
 
+	@property
+	def energy(self):
+		"""Work of the platens until the end over the volume of the block [J/m³]."""
+		return float(np.trapezoid(self.stress, self.strain))
 
-def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=1.0, strain=0.012, rotation="cosserat", step=0.6, records=300, recorders=()):
+	@property
+	def series(self):
+		"""Strain and stress as a :class:`Series`."""
+		return Series.of({"strain": "-", "stress": "Pa"}, strain=self.strain, stress=self.stress)
+
+	def bands(self, width=0.015):
+		"""The band of damage that rises to the right and the one that rises to the left: (angle to the horizontal [°], share [-]) each.
+
+		The block is cut into parallel strips of that width [m]; share is how much of the variance of the damage lies between strips rather than within them, and the
+		angle, from 40° to 85°, is that with the largest share. One band, as wide as a strip, in an intact block has a share of 0.5 to 1.
+		"""
+		return tuple(max(((sum(self._share(sign * angle, width, shift) for shift in (0, 0.5)) / 2, angle) for angle in range(40, 86)))[::-1] for sign in (1, -1))
+
+	def _share(self, angle, width, shift):
+		"""Variance of the damage between strips under an angle [°] over its variance."""
+		along, areas, damage = np.radians(angle), self.mesh.areas, self.damage.mean(axis=1)
+		across = (self.mesh.centroids - (WIDTH / 2, HEIGHT / 2)) @ (-np.sin(along), np.cos(along))
+		strip = np.floor((across - across.min()) / width + shift).astype(int)
+		damage = damage - np.average(damage, weights=areas)
+		strips, parts = np.bincount(strip, areas * damage), np.bincount(strip, areas)
+		total = areas @ damage**2
+		return float((strips**2 / np.maximum(parts, 1e-30)).sum() / total) if total > 0 else 0.0
+
+
+def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0.5, strain=0.01, rotation="cosserat", step=0.6, records=300, recorders=()):
 	"""Press the sides, crush the block and return its :class:`History`.
 
 	:param pressure: on the sides [Pa], a dead load on the undeformed sides
@@ -62,15 +93,12 @@ def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=1
 		drive.dead = False
 
 	begin, steps = platens.strain, round((strain * HEIGHT / (2 * velocity) + 0.5 * RAMP) / O.dt)
-	every, filed = max(1, steps // records), max(1, records // 50)
-	rows = []
-	for k in range(0, steps, every):
-		for write in writers if (k // every) % filed == 0 else ():
-			write()
-		for _ in range(every):
-			O.step()  # O.run looks for its end every 40 ms only
+
+	def row():
 		book.record()
-		rows.append((platens.strain - begin, platens.stress, block.damage.mean()))
+		return platens.strain - begin, platens.stress, block.damage.mean()
+
+	rows = advance(steps, records, row, writers)
 	strains, stresses, damages = np.array(rows).T
 	return History(
 		block.mesh, pressure, 2 * velocity / HEIGHT, strains, stresses, np.array(block.positions), np.array(block.sub_element_damage), damages[stresses.argmax()],
@@ -103,8 +131,12 @@ def _pressing(block, pressure):
 	return engines
 
 
-def material_point(pressure, rate, strain=0.012):
-	"""The same test on one point: axial strains [-] and stresses [Pa], compression positive, from the start of the platens."""
+def material_point(pressure, rate, strain=0.01):
+	"""The same test on one point in plane strain: axial strains [-] and stresses [Pa], compression positive, from the start of the platens.
+
+	Its ε_zz stays zero from the beginning, so σ_zz is what the law makes of it: with the concrete of Tables 1 and 2, at the peak, 10, 31, 53 and 75 MPa under 0, 20, 40
+	and 60 MPa at 10 /s. That is why strengths are not those of a cylinder in a pressure cell (105, 187, 261 and 329 MPa).
+	"""
 	from ..materialpoint import MaterialPoint
 	point = MaterialPoint()
 	if pressure > 0:
