@@ -24,7 +24,7 @@ def local_damping(check, cycles=3):
 
 	Reference: integration of m ẍ = −k x (1 ± d) over a half cycle, derived here; Cundall (1987) for the damping.
 
-	Expect: ratios and times within 0.1 %, what is lost is booked.
+	Expect: amplitudes within 0.02 %, times within 0.1 %, a few tenths of a time step; what is lost is booked.
 	"""
 	drawn = {}
 	for motion in ("shift", "rotation"):
@@ -56,7 +56,7 @@ def local_damping(check, cycles=3):
 			peaks = np.abs(values[turning])
 			check(
 				f"amplitude after {len(peaks)} half cycles, {motion}, d = {damping:g}, over that at the start [-]", peaks[-1],
-				((1 - damping) / (1 + damping))**(len(peaks) / 2), 1e-3, "half cycles of m ẍ = −k x (1 ± d)"
+				((1 - damping) / (1 + damping))**(len(peaks) / 2), 2e-4, "half cycles of m ẍ = −k x (1 ± d)"
 			)
 			check(f"time of a half cycle, {motion}, d = {damping:g} [s]", times[turning[-1]] / len(peaks), half, 1e-3, "half cycles of m ẍ = −k x (1 ± d)")
 			check(f"drift of the energy book, {motion}, d = {damping:g} [-]", energy.largest, 0, 1e-8, "conservation of energy", scale=1)
