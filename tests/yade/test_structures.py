@@ -6,6 +6,7 @@ import script_modules
 
 from yade import ConcreteDamageMat, O, ddem
 from yade.ddem.series import Series
+from yade.ddem.snapshots import TriangleSnapshot
 from yade.ddem.structures import beam, confined, impulse, reinforced, spall
 
 # --- loads
@@ -107,6 +108,32 @@ def test_block_is_tested_for_the_whole_time_though_the_platen_pulls():
 	pulled = reinforced.run(size=0.02, velocity=-1, until=1e-4)
 	assert (pulled.stress[5:] < 0).all()
 	assert pulled.times[-1] == pytest.approx(1e-4, rel=0.01)
+
+
+def test_snapshots_are_of_the_instants_that_the_pictures_name():
+	crushed = reinforced.run(size=0.02, until=1.2e-4)
+	for instant in reinforced.INSTANTS[:4]:
+		assert abs(crushed.snapshot(instant)[0].time - instant) < 1e-6
+
+
+def test_measures_of_a_block_with_known_damage():
+	crushed = reinforced.run(size=0.01, until=1e-6)
+	mesh, run = crushed.mesh, crushed.run
+	x, y = mesh.centroids.T
+	damage = np.where(y > 0.15, 0.95, 0.0)[:, None].repeat(3, axis=1)
+	nodes = mesh.nodes + 0.003 * (mesh.nodes[:, 1:] < 0.05) * (1, 0)
+	run.snapshots[:] = [TriangleSnapshot(1.0, nodes, mesh.triangles, damage, np.where((x > 0.09) & (y > 0.19), 0.4, 0.1 * (y < 0.1)), run.snapshots[0].border)]
+	concrete = mesh.areas[mesh.regions == 0].sum()
+	assert crushed.mean_damage(1.0) == pytest.approx(0.95 * 0.005 / concrete)
+	assert crushed.share(1.0, 0.9, 1) == pytest.approx(0.005 / concrete) and crushed.share(1.0, 0, 0.1) == pytest.approx(1 - 0.005 / concrete)
+	assert crushed.mean_damage(1.0, crushed.wedge(top=True)) == pytest.approx(0.95) and crushed.mean_damage(1.0, crushed.wedge(top=False)) == 0
+	assert mesh.areas[crushed.wedge(top=True)].sum() == pytest.approx(0.04**2, rel=0.02)  # base 8 cm, height 4 cm
+	assert crushed.depth(1.0) == pytest.approx(0.05, abs=0.005)
+	assert crushed.spread(1.0, upper=False) == pytest.approx(0.003) and crushed.spread(1.0, upper=True) == 0
+	largest, place = crushed.rotation(1.0)
+	assert largest == 0.4 and place[0] > 0.09 and place[1] > 0.19
+	assert crushed.rotation(1.0, upper=False)[0] == 0.1
+	assert crushed.wave == pytest.approx(2400 * np.sqrt((30e9 + 4 / 3 * 26e9) / 2400) * 10)  # ρ c_p v of Table 1
 
 
 def test_without_the_bar_the_others_keep_their_fracture_energies():

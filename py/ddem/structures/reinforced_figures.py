@@ -16,14 +16,11 @@ def history(crushed, instants, shown=3e-4):
 		_curve(upper, crushed, "its mean over 5 µs", plots.COLOURS[1])
 		upper.legend(loc="upper right")
 		for number, instant in enumerate(instants, start=1):
-			if instant <= shown:
-				height = np.interp(instant, crushed.times, crushed.smooth) / 1e6
-				upper.plot(1e6 * instant, height, "o", color="k", markersize=3, zorder=4)
-				upper.annotate(str(number), (1e6 * instant, height), textcoords="offset points", xytext=(4, 5), fontsize=8)
+			_mark(upper, crushed, instant, str(number))
 		_label(upper, shown)
 		for number, (ax, instant) in enumerate(zip(lower, instants), start=1):
 			drawn = block(ax, crushed, instant, "damage", (0, 1))
-			ax.set_title(f"{number}: {1e6 * instant:.0f} µs")
+			ax.set_title(f"{number}: {1e6 * crushed.snapshot(instant)[0].time:.0f} µs")
 		_share(lower)
 		fig.colorbar(drawn, ax=list(lower), label="damage $\\eta/\\eta_{max}$ [-]", shrink=0.8, aspect=25)
 	return fig
@@ -40,28 +37,31 @@ def shape(crushed, instant):
 			fig.colorbar(drawn, ax=ax, label=name, shrink=0.8, aspect=25, location="bottom")
 		_share(lower)
 		times = 1e3 * np.array([s.time for s in crushed.run.snapshots])
-		upper.plot(times, [np.abs(s.rotation).max() for s in crushed.run.snapshots], color=plots.COLOURS[0], label="largest rotation [rad]")
+		upper.plot(times, [np.abs(s.rotation).max() for s in crushed.run.snapshots], color=plots.COLOURS[0], label="largest rotation")
 		lateral = [1e2 * np.abs((s.nodes - crushed.mesh.nodes)[:, 0]).max() for s in crushed.run.snapshots]
-		upper.plot(times, lateral, color=plots.COLOURS[1], label="largest lateral displacement [cm]")
+		upper.plot(times, lateral, color=plots.COLOURS[1], label="largest lateral displacement")
 		upper.axhline(np.pi / 3, color="0.4", linewidth=0.7, linestyle="--")
-		upper.annotate(r"$\pi/3$", (times[-1], np.pi / 3), textcoords="offset points", xytext=(-14, 3))
+		upper.annotate(r"$\pi/3$", (0, np.pi / 3), textcoords="offset points", xytext=(2, 3))
 		upper.set_xlabel("time [ms]")
+		upper.set_ylabel("rotation [rad], displacement [cm]")
+		upper.set_xlim(0, None)
 		upper.set_ylim(0, None)
-		upper.legend(loc="lower right")
+		upper.legend(loc="upper left")
 	return fig
 
 
-def realisations(crushed, instant, shown=3e-4):
-	"""Figure 8: stress over time of several realisations (by seed), and damage of each at an instant [s]."""
+def realisations(crushed, instant):
+	"""Figure 8: stress over time of several realisations (by seed), and damage of each at an instant [s], the point P."""
 	with rc_context(plots.STYLE):
 		fig, upper, lower = _rows(len(crushed), 125, (0.62, 1))
 		for number, (seed, one) in enumerate(crushed.items()):
 			_curve(upper, one, f"seed {seed}", plots.COLOURS[number % len(plots.COLOURS)])
-		_label(upper, shown)
+		_mark(upper, next(iter(crushed.values())), instant, "P")
+		_label(upper, 1.02 * instant)
 		upper.legend(loc="upper right")
 		for ax, (seed, one) in zip(lower, crushed.items()):
 			drawn = block(ax, one, instant, "damage", (0, 1))
-			ax.set_title(f"seed {seed}")
+			ax.set_title(f"seed {seed}, P: {1e6 * one.snapshot(instant)[0].time:.0f} µs")
 		_share(lower)
 		fig.colorbar(drawn, ax=list(lower), label="damage $\\eta/\\eta_{max}$ [-]", shrink=0.8, aspect=25)
 	return fig
@@ -96,36 +96,40 @@ def refinement(crushed, shown=3e-4):
 	return fig
 
 
-def shielding(crushed, fields, instant, later, zones):
-	"""What the bar changes: vertical stress at an instant and damage at a later one [s], with and without it, and damage over time in zones around it.
+def shielding(crushed, zones, instant=24e-6, later=70e-6):
+	"""What the bar changes: damage over time in zones around it, vertical stress at an instant [s] and damage at a later one with the bar, and the difference to
+	the block without it.
 
-	:param crushed, fields: {True: with the bar, False: without}, a :class:`reinforced.Crushed` and its :class:`reinforced.Fields` each
-	:param zones: rows of the triangles by name
+	:param crushed: see :func:`reinforced_statements.with_and_without_bar`
+	:param zones: masks of the triangles by name
 	"""
+	with_bar, without = crushed[True], crushed[False]
 	with rc_context(plots.STYLE):
-		fig = plots.figure(plots.PAGE, 70)
+		fig = plots.figure(plots.PAGE, 75)
 		fig.set_layout_engine("constrained")
-		curve, *maps = fig.subplots(1, 5, width_ratios=(1.5, 1, 1, 1, 1))
+		curve, *maps = fig.subplots(1, 5, width_ratios=(1.6, 1, 1, 1, 1))
 		for number, (name, zone) in enumerate(zones.items()):
-			for bar in (True, False):
-				snapshots = crushed[bar].run.snapshots
-				damages = [snapshot.damage[zone].mean() for snapshot in snapshots]
-				curve.plot([1e6 * s.time for s in snapshots], damages, "-" if bar else "--", color=plots.COLOURS[number], label=name if bar else None)
+			for one, line in ((with_bar, "-"), (without, "--")):
+				times = [snapshot.time for snapshot in one.run.snapshots]
+				curve.plot([1e6 * time for time in times], [one.mean_damage(time, zone) for time in times], line, color=plots.COLOURS[number],
+					label=name if one is with_bar else None)
 		curve.plot([], [], "k--", label="without bar")
 		curve.set_xlabel("time [µs]")
 		curve.set_ylabel("mean damage [-]")
-		curve.legend(loc="upper left")
+		curve.set_ylim(0, None)
+		curve.legend(loc="upper left", bbox_to_anchor=(0.0, 1.05), handlelength=1.5)
 		curve.spines[["top", "right"]].set_visible(False)
-		pairs = ((maps[:2], instant, lambda bar: -fields[bar].at(instant)[:, 1] / 1e6, (0, 200), "compression [MPa]"),)
-		pairs += ((maps[2:], later, lambda bar: crushed[bar].snapshot(later)[0].damage, (0, 1), "damage [-]"),)
-		for row, time, values, limits, name in pairs:
-			for ax, bar in zip(row, (True, False)):
-				drawn = block(ax, crushed[bar], time, values(bar), limits)
-				ax.set_title(f"{'bar' if bar else 'none'}, {1e6 * time:.0f} µs")
-			fig.colorbar(drawn, ax=list(row), label=name, location="bottom", shrink=0.9, aspect=25)
-		_share(maps)
-		for ax in maps:
+		stresses = [-one.recorders[0].at(instant)[:, 1] / 1e6 for one in (with_bar, without)]
+		damages = [one.damage(later) for one in (with_bar, without)]
+		pictures = (
+			(instant, stresses[0], (0, 200), "compression\n[MPa]"), (instant, stresses[0] - stresses[1], None, "with − without\n[MPa]"),
+			(later, damages[0], (0, 1), "damage\n[-]"), (later, damages[0] - damages[1], None, "with − without\n[-]")
+		)
+		for ax, (time, values, limits, name) in zip(maps, pictures):
+			ax.set_title(f"{1e6 * time:.0f} µs")
+			fig.colorbar(block(ax, with_bar, time, values, limits), ax=ax, label=name, location="bottom", shrink=0.9, aspect=10)
 			ax.set_xlabel("")
+		_share(maps)
 	return fig
 
 
@@ -158,6 +162,12 @@ def _rows(count, height, ratios, side=False):
 
 def _curve(ax, crushed, label, colour):
 	ax.plot(1e6 * crushed.times, crushed.smooth / 1e6, color=colour, linewidth=0.8, label=label)
+
+
+def _mark(ax, crushed, instant, text):
+	height = np.interp(instant, crushed.times, crushed.smooth) / 1e6
+	ax.plot(1e6 * instant, height, "o", color="k", markersize=3, zorder=4)
+	ax.annotate(text, (1e6 * instant, height), textcoords="offset points", xytext=(4, 5), fontsize=8)
 
 
 def _label(ax, shown):
