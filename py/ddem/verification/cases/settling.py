@@ -24,7 +24,7 @@ def settling(check, size=2.0):
 
 	Reference: equilibrium of the part above y, and Hooke's law in plane strain (Timoshenko and Goodier, Theory of Elasticity, 1970, art. 96); Betti's theorem.
 
-	Expect: weight, mean stresses and settlement to the residual of the relaxation (1e-7); the stress of the triangles more than one width above the support within
+	Expect: weight, mean stresses and settlement to 1e-6: the residual of the relaxation is 1e-7; the stress of the triangles more than one width above the support within
 	1 % of its largest on 2 m triangles.
 	"""
 	material = tools.elastic()
@@ -39,11 +39,11 @@ def settling(check, size=2.0):
 	force, mass = engine.array("nodeForce"), engine.array("nodeMass")
 	held = np.isin(block.node_ids, bottom)
 	support = -(force[held, 1] - GRAVITY * mass[held]).sum()
-	check("force on the support [N]", support, weight, 1e-7, "equilibrium")
+	check("force on the support [N]", support, weight, 1e-6, "equilibrium")
 	stress = block.stress.mean(axis=1)
 	mean = np.average(stress, axis=0, weights=block.area)
-	check("mean σ_yy [Pa]", mean[1], -weight / (2 * WIDTH), 1e-7, "virtual work")
-	check("mean σ_xx [Pa]", mean[0], 0, 1e-7, "virtual work", scale=weight / WIDTH)
+	check("mean σ_yy [Pa]", mean[1], -weight / (2 * WIDTH), 1e-6, "virtual work")
+	check("mean σ_xx [Pa]", mean[0], 0, 1e-6, "virtual work", scale=weight / WIDTH)
 	row = np.isin(block.node_ids, top)
 	x, moved = block.mesh.nodes[row, 0], block.displacements[row, 1]
 	settlement = -np.trapezoid(moved[np.argsort(x)], np.sort(x)) / WIDTH
