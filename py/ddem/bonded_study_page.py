@@ -1,20 +1,15 @@
 # GPL v2 or later, see LICENSE.
 """The page of the study of bonded spheres, with its JSON, CSV files and pictures."""
-import base64
 import csv
 import datetime
 import json
 import os
 import re
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
 from . import bonded_study_figures as figures
-from . import plots
+from . import pages
 from .bonded_study import ESYS, FIGURES, RECORD, UCS_CLAIMED, YOUNG_CLAIMED, change, claims, place, write_curves
-from .report import Picture, processor
 
-_TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 _MEDIUM = (0.4e-3, 2e-3)  # radii [m]
 _SHOWN = [figure for figure in FIGURES if figure[0] not in ("particles", "bonds", "time_bottom_ms", "time_top_ms")]  # in tables
 TITLE = "Uniaxial compression of bonded spheres: the paper's figures"
@@ -42,18 +37,13 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 		drawn = {name: draw(paper) for name, draw in figures.PAPER.items()}
 		if others:
 			drawn["influences"] = figures.influences(_compared(groups))
-	environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 	columns = [f"{title} [{unit}]" if unit else title for _, title, unit, _ in _SHOWN]
-	environment.filters["tied"] = _tied
-	page = environment.get_template("bonded_study.html").render(
-		title=TITLE, written=written, runs=sum(len(g.records) for g in groups), machine=processor(), lead=lead(paper), claims=said, packings=len(paper[0].records),
-		columns=columns, rows=_rows(groups), breaks=_breaks(groups), settings=settings, command=command, versions=versions,
-		pictures={name: _save(figure, folder, name, pdf) for name, figure in drawn.items()}, **texts
+	page = pages.render(
+		"bonded_study.html", {"tied": _tied}, title=TITLE, written=written, runs=sum(len(g.records) for g in groups), machine=pages.processor(), lead=lead(paper),
+		claims=said, packings=len(paper[0].records), columns=columns, rows=_rows(groups), breaks=_breaks(groups), settings=settings, command=command,
+		versions=versions, pictures=pages.save(drawn, folder, pdf), **texts
 	)
-	path = os.path.join(folder, "bonded_figures.html")
-	with open(path, "w", encoding="utf-8") as file:
-		file.write(page)
-	return path
+	return pages.write(page, os.path.join(folder, "bonded_figures.html"))
 
 
 def table(groups):
@@ -210,11 +200,3 @@ def _run(record):
 
 def _spread(spread):
 	return None if spread is None else {"median": float(spread.median), "smallest": float(spread.low), "largest": float(spread.high)}
-
-
-def _save(figure, folder, name, pdf):
-	plots.save(figure, os.path.join(folder, f"{name}.png"))
-	if pdf:
-		plots.save(figure, os.path.join(folder, f"{name}.pdf"))
-	with open(os.path.join(folder, f"{name}.png"), "rb") as file:
-		return Picture(base64.b64encode(file.read()).decode(), 25.4 * figure.get_figwidth())

@@ -7,7 +7,6 @@
 	print(report.table())
 	report.write()
 """
-import base64
 import datetime
 import json
 import math
@@ -15,16 +14,13 @@ import os
 import platform
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
-from . import plots
+from . import pages, plots
 from .calibration_quantities import MEASURES, TUNABLES
-from .report import processor
 
-_TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 _WIDTH = 11  # of a column of progress
 
 
@@ -156,7 +152,7 @@ class CalibrationReport:
 			"command": self.command,
 			"options": self.options,
 			"versions": self.versions,
-			"machine": {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count()},
+			"machine": {"system": platform.platform(), "processor": pages.processor(), "cores": os.cpu_count()},
 			"reached": outcome.reached,
 			"why": outcome.why,
 			"targets": {
@@ -197,27 +193,15 @@ class CalibrationReport:
 		with open(self._path("calibration.json"), "w") as file:
 			json.dump(self.summary(), file, indent=2, allow_nan=False)
 			file.write("\n")
-		pictures = self._write_pictures() if self.pictures else {}
-		environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-		environment.filters["symbol"] = _markup
-		template = environment.get_template("calibration.html")
-		page = template.render(report=self, outcome=self.outcome, bench=self.bench, pictures=pictures, processor=processor())
-		with open(self._path("calibration.html"), "w", encoding="utf-8") as file:
-			file.write(page)
-		return self._path("calibration.html")
-
-	def _write_pictures(self):
-		drawn = {"convergence": convergence(self.outcome)} if self.outcome.best else {}
-		if self.outcome.elasticities is not None:
-			drawn["sensitivities"] = sensitivities(self.outcome, self.model)
-		pictures = {}
-		for name, figure in drawn.items():
-			plots.save(figure, self._path(f"{name}.png"))
-			if self.pdf:
-				plots.save(figure, self._path(f"{name}.pdf"))
-			with open(self._path(f"{name}.png"), "rb") as file:
-				pictures[name] = base64.b64encode(file.read()).decode()
-		return pictures
+		drawn = {}
+		if self.pictures:
+			drawn["convergence"] = convergence(self.outcome) if self.outcome.best else None
+			drawn["sensitivities"] = sensitivities(self.outcome, self.model) if self.outcome.elasticities is not None else None
+		page = pages.render(
+			"calibration.html", {"symbol": _markup}, title=self.title, written=self.written, report=self, outcome=self.outcome, bench=self.bench,
+			pictures=pages.save(drawn, self.folder, self.pdf), processor=pages.processor()
+		)
+		return pages.write(page, self._path("calibration.html"))
 
 	def _path(self, name):
 		return os.path.join(self.folder, name)

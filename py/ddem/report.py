@@ -7,19 +7,13 @@ Works on finished runs (:class:`runs.Run`), so a report can be made again withou
 	report.write()
 	print(report.table())
 """
-import base64
 import datetime
 import json
 import os
 import platform
-from dataclasses import dataclass
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-
-from . import broken_bonds, plots, report_figures
+from . import broken_bonds, pages, report_figures
 from .runs import cost_ratios
-
-_TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 
 THOUSANDS = "\u202f"  #: between thousands: a narrow space
 
@@ -50,13 +44,6 @@ ROWS = (
 )
 #: rows that are left out where no run has them
 _IF_ANY = {"bonds", "ucs_MPa", "tensile_MPa", "broken_in_tension", "broken_in_shear"}
-
-
-@dataclass(frozen=True)
-class Picture:
-	"""A picture of the page."""
-	data: str  # PNG file in base64
-	width: float  # [mm]
 
 
 class Report:
@@ -90,7 +77,7 @@ class Report:
 			"command": self.command,
 			"options": self.options,
 			"versions": self.versions,
-			"machine": {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count(), "threads": self.runs[0].threads},
+			"machine": {"system": platform.platform(), "processor": pages.processor(), "cores": os.cpu_count(), "threads": self.runs[0].threads},
 			"models": {run.model: {**run.summary(), "parameters": {name: value for name, value, _ in run.parameters}} for run in self.runs},
 			"cost_ratio_deformable_to_rigid": cost_ratios(self.runs),
 		}
@@ -135,46 +122,20 @@ class Report:
 				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
 		with open(self._path("summary.json"), "w") as file:
 			file.write(summary + "\n")
-		pictures = self._write_pictures() if self.pictures else {}
-		page = self.html(pictures)
-		with open(self._path("report.html"), "w", encoding="utf-8") as file:
-			file.write(page)
-		return self._path("report.html")
+		pictures = pages.save({name: draw(self.runs) for name, draw in report_figures.ALL.items()}, self.folder, self.pdf) if self.pictures else {}
+		return pages.write(self.html(pictures), self._path("report.html"))
 
 	def html(self, pictures):
-		"""The page; *pictures* (:class:`Picture`) by name."""
-		environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+		"""The page; *pictures* (:class:`pages.Picture`) by name."""
 		summary = self.summary()
-		return environment.get_template("compression.html").render(
-			title=self.title, written=self.written, command=self.command, settings=self.settings, notes=self.notes, versions=self.versions, machine=summary["machine"],
-			runs=self.runs, by_model={run.model: run for run in self.runs}, summaries=summary["models"], rows=self.table_rows(),
+		return pages.render(
+			"compression.html", title=self.title, written=self.written, command=self.command, settings=self.settings, notes=self.notes, versions=self.versions,
+			machine=summary["machine"], runs=self.runs, by_model={run.model: run for run in self.runs}, summaries=summary["models"], rows=self.table_rows(),
 			ratios=summary["cost_ratio_deformable_to_rigid"], pictures=pictures, options=self.options, one=self.runs[0] if len(self.runs) == 1 else None
 		)
 
-	def _write_pictures(self):
-		pictures = {}
-		for name, draw in report_figures.ALL.items():
-			figure = draw(self.runs)
-			if figure is None:
-				continue
-			plots.save(figure, self._path(f"{name}.png"))
-			if self.pdf:
-				plots.save(figure, self._path(f"{name}.pdf"))
-			with open(self._path(f"{name}.png"), "rb") as file:
-				pictures[name] = Picture(base64.b64encode(file.read()).decode(), 25.4 * figure.get_figwidth())
-		return pictures
-
 	def _path(self, name):
 		return os.path.join(self.folder, name)
-
-
-def processor():
-	"""Name of the processor."""
-	try:
-		with open("/proc/cpuinfo") as file:
-			return next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), platform.machine())
-	except OSError:
-		return platform.machine()
 
 
 def _formatted(value, factor, form):

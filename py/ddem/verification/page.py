@@ -1,21 +1,17 @@
 # GPL v2 or later, see LICENSE.
 """The verification page: one HTML file with every case, its reference, error, tolerance, source and picture."""
-import base64
 import datetime
 import os
 import platform
 import re
 
 import numpy as np
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 from matplotlib import rc_context
 
-from .. import plots
-from ..report import processor
+from .. import pages, plots
 from .framework import GROUPS, Picture
 
-_TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, "templates")
 _FLOOR = 1e-16  # errors below are drawn there
 
 
@@ -34,21 +30,17 @@ def write(results, folder, command="", versions=None):
 			pictures.setdefault(result.case.name, []).append((picture, name, _save(picture, os.path.join(folder, name))))
 	overview = Picture(errors(results), "")
 	page = html(results, pictures, _save(overview, os.path.join(folder, "errors.png")), command, versions)
-	path = os.path.join(folder, "verification.html")
-	with open(path, "w", encoding="utf-8") as file:
-		file.write(page)
-	return path
+	return pages.write(page, os.path.join(folder, "verification.html"))
 
 
 def html(results, pictures, overview, command="", versions=None):
 	"""The page; *pictures* of each case by its name, as (:class:`framework.Picture`, file name, bytes of a PNG file), *overview* the bytes of the picture of
 	all errors."""
-	environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-	environment.filters.update(
-		figure=lambda value: _number(value, 6), error=lambda value: _number(value, 2), png=lambda data: base64.b64encode(data).decode(), indices=_with_indices
-	)
+	filters = {"figure": lambda value: _number(value, 6), "error": lambda value: _number(value, 2), "png": pages.encoded, "indices": _with_indices}
 	records = [record for result in results for record in result.records]
-	return environment.get_template("verification.html").render(
+	return pages.render(
+		"verification.html",
+		filters,
 		written=datetime.datetime.now().astimezone(),
 		groups=[(group, [r for r in results if r.case.group == group]) for group in GROUPS],
 		results=results,
@@ -60,7 +52,7 @@ def html(results, pictures, overview, command="", versions=None):
 		overview=overview,
 		command=command,
 		versions=dict(versions or {}),
-		processor=processor(),
+		processor=pages.processor(),
 		system=platform.platform(),
 		cores=os.cpu_count()
 	)
