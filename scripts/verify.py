@@ -63,9 +63,13 @@ def read_options():
 	parser.add_argument("--json", metavar="FILE", help="write all comparisons into a file")
 	parser.add_argument("--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing")
 	options = parser.parse_args()
+	if options.list and (options.json or options.report):
+		parser.error("argument --list: runs no case, so there is nothing for --json or --report; leave out one of them")
+	if options.json and os.path.isdir(options.json):
+		parser.error(f"argument --json: {options.json} is a folder; name a file, such as {os.path.join(options.json, 'verification.json')}")
 	try:
 		if options.case:
-			options.cases = [verification.find(name) for name in options.case]
+			options.cases = [verification.find(name) for name in dict.fromkeys(options.case)]
 		else:
 			options.cases = [case for case in verification.all_cases() if options.all or not case.slow]
 	except ValueError as error:

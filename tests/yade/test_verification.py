@@ -5,11 +5,13 @@ import os
 import re
 import runpy
 
+import numpy as np
 import pytest
 
 from yade import O
 from yade.ddem import verification
-from yade.ddem.verification import framework, page
+from yade.ddem.materialpoint import concrete
+from yade.ddem.verification import concrete_rates, concrete_theory, framework, page
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "scripts", "verify.py")
 KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s"]
@@ -165,3 +167,36 @@ def test_script_complains_about_wrong_calls(verify, tmp_path):
 	(tmp_path / "file").write_text("")
 	code, printed = verify("--case", "settling", "--report", str(tmp_path / "file"))
 	assert code == 2 and "cannot write" in printed
+	code, printed = verify("--case", "settling", "--json", str(tmp_path))
+	assert code == 2 and "is a folder" in printed
+	code, printed = verify("--list", "--report", str(tmp_path / "new"))
+	assert code == 2 and "leave out one" in printed and not (tmp_path / "new").exists()
+
+
+def test_a_case_named_twice_runs_once(verify):
+	code, printed = verify("--case", "settling", "settling")
+	assert code == 0 and "1 cases" in printed
+
+
+# --- references
+
+
+@pytest.mark.parametrize("tension, limit, jump", [(False, 30, 0.012), (True, 10, 0.001)])
+def test_model_code_branches_meet(tension, limit, jump):
+	"""The factors 0.012 and 0.0062 of the code are rounded: at 30 and 10 /s its branches give 1.2134 and 1.2, 1.3366 and 1.3357."""
+	below, above = concrete_theory.fib_factor(np.array([limit, limit * (1 + 1e-9)]), tension)
+	assert 0 < 1 - above / below < jump
+	assert concrete_theory.fib_factor(concrete_theory.FIB_STATIC[tension], tension) == pytest.approx(1)
+
+
+def test_biaxial_tests():
+	assert concrete_theory.kupfer(np.array([0, 0.52, 1])) == pytest.approx([1, 1.254, 1.1625], abs=5e-4)  # 1.16 at equal stresses: Kupfer et al. (1969)
+
+
+@pytest.mark.parametrize("name, change", [("strength", 1.01), ("friction", 1.01), ("fractureEnergy", 1.01), ("closedGrowth", 1.02), ("rateExponent", 1.001)])
+def test_curves_tell_a_wrong_law(name, change):
+	"""A parameter that is off by one per cent shows in a curve by far more than the tolerance of the case."""
+	parameters = concrete()
+	_, right = concrete_rates.RatePoint(parameters).uniaxial(-1, -0.006)
+	_, wrong = concrete_rates.RatePoint({**parameters, name: parameters[name] * change}).uniaxial(-1, -0.006)
+	assert concrete_rates.largest_difference(wrong[:, 1], right[:, 1]) > 1e-3
