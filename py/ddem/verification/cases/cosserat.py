@@ -136,7 +136,7 @@ def cosserat_dispersion(check):
 
 		ρ ü = μ u'' + ½ μβ_φ ∂_x (½u' − φ),   j φ̈ = μβ_φ (½u' − φ)
 
-	With all in proportion to e^{i(kx − ωt)} the second gives the rotation of the cores, and with it the first the dispersion relation:
+	With all in proportion to exp i(kx − ωt) the second gives the rotation of the cores, and with it the first the dispersion relation:
 
 		φ = ½u' ω_c²/(ω_c² − ω²),   ω_c² = μβ_φ/j
 
@@ -144,9 +144,9 @@ def cosserat_dispersion(check):
 
 	Two branches: slow waves, in which cores turn with the material, the more the faster it swings, and by their inertia slow the wave down (c → c_s as k → 0, for
 	any β_φ); and above ω_c waves in which cores swing against it, c → √(1 + β_φ/4) c_s as k → ∞. Between ω_c/√(1 + β_φ/4) and ω_c the continuum has none. It is
-	the reduced Cosserat medium, without couple stresses: Eringen's micropolar one with κ = ½μβ_φ and γ = 0. ω_c is 6√β_φ c_s/a with α = 1/6 and triangles of
-	edge a: a matter of the mesh, so there the lattice shows as well. It is solved exactly by Bloch's theorem, with matrices assembled in the case's own file
-	from the equations of the element.
+	the reduced Cosserat medium, without couple stresses: Eringen's micropolar one with κ = ½μβ_φ, a shear modulus of μ − κ/2, and γ = 0. ω_c is 6√β_φ c_s/a with
+	α = 1/6 and triangles of edge a: a matter of the mesh, so there the lattice shows as well. It is solved exactly by Bloch's theorem, with matrices assembled
+	in the case's own file from the equations of the element.
 
 	Reference: Bloch's theorem for the lattice; for long waves the continuum above, derived here (Eringen, Microcontinuum Field Theories, 1999; reduced medium:
 	Grekova, Kulesh and Herman, Bull. Seismol. Soc. Am. 99, 2009), with the classic dispersion of the same mesh, measured with rotation “none”, for c_s k.
