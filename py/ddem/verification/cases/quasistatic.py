@@ -34,7 +34,7 @@ def dynamic_relaxation(check):
 
 	Reference: FreeFem++ on the mesh in which every triangle is split at its centroid, two materials; equilibrium of the block.
 
-	Expect: displacements within 3·10⁻⁶ and the force on the platen within 10⁻⁶ of FreeFem++, as the residual lets expect; the rotation of frames changes them by
+	Expect: displacements and the forces on the platens within 3·10⁻⁶ of FreeFem++, some times the residual; the rotation of frames changes them by
 	less than that at this strain. The compact block comes to rest fastest with little damping, see the note.
 	"""
 	histories = {}
@@ -65,8 +65,8 @@ def dynamic_relaxation(check):
 		check(f"displacements after {steps} steps, largest difference, {rotation} [-]", difference, 0, 3e-6, source, scale=1)
 		bottom, top = (block.node_forces[np.isin(block.node_ids, block.boundary(side)), 1].sum() for side in ("bottom", "top"))
 		force = platen_force(nodes, triangles, expected, np.repeat(moduli, 3, axis=0))
-		check(f"force on the upper platen, {rotation} [N/m]", top, force, 1e-6, source)
-		check(f"force on both platens over that on one, {rotation} [-]", (bottom + top) / top, 0, 1e-6, "equilibrium of the block", scale=1)
+		check(f"force on the upper platen, {rotation} [N/m]", top, force, 3e-6, source)
+		check(f"force on both platens over that on one, {rotation} [-]", (bottom + top) / top, 0, 3e-6, "equilibrium of the block", scale=1)
 	after = {damping: residuals[7] for damping, (_, residuals) in histories.items()}
 	check.note(
 		f"""Local damping acts on every degree of freedom by the sign of its own motion, and so keeps stiff modes going while slow ones move. After 2000
