@@ -2,7 +2,7 @@
 # needs: freefem++
 """See deformable triangles and the concrete law hold: cases with exact, published or independent solutions, each with its error and tolerance.
 
-Run:      scripts/ddem run scripts/verify.py                                (the quick cases: half a minute)
+Run:      scripts/ddem run scripts/verify.py                                (the quick cases: some 40 s)
           scripts/ddem run scripts/verify.py --all --report out/verify      (all cases, and a page with pictures)
           scripts/ddem run scripts/verify.py --list                         (what there is)
           scripts/ddem run scripts/verify.py --case kirsch cantilever       (some)

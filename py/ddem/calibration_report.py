@@ -11,7 +11,6 @@ import datetime
 import json
 import math
 import os
-import platform
 
 import numpy as np
 from markupsafe import Markup
@@ -152,7 +151,7 @@ class CalibrationReport:
 			"command": self.command,
 			"options": self.options,
 			"versions": self.versions,
-			"machine": {"system": platform.platform(), "processor": pages.processor(), "cores": os.cpu_count()},
+			"machine": pages.machine(),
 			"reached": outcome.reached,
 			"why": outcome.why,
 			"targets": {

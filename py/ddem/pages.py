@@ -60,6 +60,11 @@ def write(page, path):
 	return path
 
 
+def machine():
+	"""What the page was made on: system, processor, number of its cores."""
+	return {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count()}
+
+
 def processor():
 	"""Name of the processor."""
 	try:

@@ -10,7 +10,6 @@ Works on finished runs (:class:`runs.Run`), so a report can be made again withou
 import datetime
 import json
 import os
-import platform
 
 from . import broken_bonds, pages, report_figures
 from .runs import cost_ratios
@@ -77,7 +76,7 @@ class Report:
 			"command": self.command,
 			"options": self.options,
 			"versions": self.versions,
-			"machine": {"system": platform.platform(), "processor": pages.processor(), "cores": os.cpu_count(), "threads": self.runs[0].threads},
+			"machine": {**pages.machine(), "threads": self.runs[0].threads},
 			"models": {run.model: {**run.summary(), "parameters": {name: value for name, value, _ in run.parameters}} for run in self.runs},
 			"cost_ratio_deformable_to_rigid": cost_ratios(self.runs),
 		}

@@ -2,7 +2,6 @@
 """The verification page: one HTML file with every case, its reference, error, tolerance, source and picture."""
 import datetime
 import os
-import platform
 import re
 
 import numpy as np
@@ -52,9 +51,7 @@ def html(results, pictures, overview, command="", versions=None):
 		overview=overview,
 		command=command,
 		versions=dict(versions or {}),
-		processor=pages.processor(),
-		system=platform.platform(),
-		cores=os.cpu_count()
+		machine=pages.machine()
 	)
 
 

@@ -183,7 +183,7 @@ def swinging(rotation, swing, gravity):
 	return times, angle, crossings[1] - crossings[0], exact, energy.largest
 
 
-@case(group="rotation", seconds=8)
+@case(group="rotation", seconds=10)
 def rolled_beam(check, cells=(4, 6)):
 	"""A beam is rolled up to a ring
 
