@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 import script_modules
+from test_vtk import collection, read
+from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE
 
 from yade import ConcreteDamageMat, O, ddem
 from yade.ddem.series import Series
@@ -22,11 +24,25 @@ def test_impulse_on_nodes_has_the_force_and_the_place_of_its_pressure(patch):
 	assert (mesh.nodes[nodes, 0] == 0).all()
 
 
-@pytest.mark.parametrize("shape, mean", [("sine-squared", 1 / 2), ("half-sine", 2 / np.pi), ("triangle", 1 / 2), ("rectangle", 1)])
+@pytest.mark.parametrize("shape, mean", [("sine-squared", 1 / 2), ("half-sine", 2 / np.pi), ("triangle", 1 / 2), ("trapezoid", 0.9)])
 def test_impulse_brings_in_its_momentum(shape, mean):
 	push = impulse.Impulse(shape, pressure=3e6, duration=20e-6)
 	assert push.momentum == pytest.approx(mean * 3e6 * 20e-6 * impulse.HEIGHT, rel=1e-4)  # integrals of the shapes
 	assert push.at(1.01 * push.duration) == 0
+
+
+@pytest.mark.parametrize("until", [1.9e-5, 2e-5, 2.013e-5])
+def test_every_instant_up_to_the_end_has_its_field(until):
+	history = impulse.run(size=0.02, until=until, instants=(1e-5, until))
+	assert np.abs(history.instants - (1e-5, until)).max() <= 1.001 * history.dt and len(history.fields) == 2
+
+
+@pytest.mark.parametrize("waves", [1, 2, 5])
+def test_regions_of_one_sign_are_counted(waves):
+	mesh = ddem.mesh.rectangle(impulse.WIDTH, impulse.HEIGHT, 0.01)
+	values = np.sin(np.pi * waves * mesh.nodes[:, 1] / impulse.HEIGHT)
+	assert impulse.regions(mesh, values) == waves
+	assert impulse.regions(mesh, values + 0.05 * np.sin(999 * mesh.nodes[:, 0])) == waves  # what is below a tenth does not count
 
 
 def test_sides_are_pressed_evenly():
@@ -83,9 +99,9 @@ def test_bands_are_found_under_their_angles():
 	band = lambda angle: np.abs(y * np.cos(np.radians(angle)) - x * np.sin(np.radians(angle))) < 0.008
 	damage = np.repeat((band(52) | band(-67)).astype(float)[:, None], 3, axis=1)
 	none = np.zeros(2)
-	(right, _), (left, _) = confined.History(mesh, 0.0, 1.0, none, none, mesh.nodes, damage, 0.0, 0.0).bands()
+	(right, _), (left, _) = confined.History(mesh, 0.0, 1.0, none, none, none, mesh.nodes, damage, 0.0, 0.0).bands()
 	assert (right, left) == (pytest.approx(52, abs=2), pytest.approx(67, abs=2))
-	((_, alone), _) = confined.History(mesh, 0.0, 1.0, none, none, mesh.nodes, np.repeat(band(60).astype(float)[:, None], 3, axis=1), 0.0, 0.0).bands()
+	((_, alone), _) = confined.History(mesh, 0.0, 1.0, none, none, none, mesh.nodes, np.repeat(band(60).astype(float)[:, None], 3, axis=1), 0.0, 0.0).bands()
 	assert 0.5 < alone <= 1
 
 
@@ -174,14 +190,21 @@ def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
 	found = {file.name for file in (tmp_path / "new").iterdir() if file.suffix != ".vtu"}
 	assert found == expected
 	for file in expected:
+		if file.endswith(".pvd"):
+			files = collection(tmp_path / "new" / file)
+			assert len(files) >= 10 and sorted(time for time, _ in files) == [time for time, _ in files]
+			points, cells, kind, point, cell, time, _ = read(files[-1][1])
+			assert kind == VTK_TRIANGLE and len(cells) > 20 and time == files[-1][0] > 0
+			assert np.abs(point["displacement"]).max() > 0 and np.isfinite(cell["stress"]).all() and np.abs(cell["stress"]).max() > 1e3
 		if file.endswith(".csv"):
 			assert len(Series.read(tmp_path / "new" / file)) > 10
 	assert str(tmp_path / "new") in capsys.readouterr().out
 
 
 WRONG = [
-	("elastic_impulse", ["--patch", "1"], "patch = 1.0 m"), ("elastic_impulse", ["--instants", "1"], "--instants"), ("reinforced_block", ["--step", "2"], "--step: 2"),
-	("reinforced_block", ["--until", "0"], "--until: 0"), ("spall_bar", ["--speed", "0"], "--speed: 0"), ("spall_bar", ["--duration", "1"], "--duration"),
+	("elastic_impulse", ["--patch", "1"], "patch = 1.0 m"), ("elastic_impulse", ["--instants", "1"], "--instants"),
+	("elastic_impulse", ["--pressure", "nan"], "pressure = nan Pa"), ("elastic_impulse", ["--size", "1e-5"], "--size: 1e-05"),
+	("reinforced_block", ["--step", "2"], "--step: 2"), ("reinforced_block", ["--until", "0"], "--until: 0"), ("spall_bar", ["--speed", "0"], "--speed: 0"), ("spall_bar", ["--duration", "1"], "--duration"),
 	("confined_block", ["--pressures", "-1"], "--pressures: -1"), ("notched_beam", ["--sizes", "1"], "--sizes: 1"), ("mesh_orientation", ["--count", "3"], "--count: 3")
 ]
 

@@ -18,7 +18,7 @@ def strength(rough, smooth):
 		for number, one in enumerate(rough):
 			colour = plots.COLOURS[number]
 			places["curves"].plot(100 * one.strain, one.stress / 1e6, color=colour, label=f"{one.pressure / 1e6:g} MPa")
-			strain, stress = confined.material_point(one.pressure, one.rate, one.strain[-1])
+			strain, stress, _ = confined.material_point(one.pressure, one.rate, one.strain[-1])
 			places["curves"].plot(100 * strain, stress / 1e6, "k--", linewidth=0.6)
 		places["curves"].plot([], [], "k--", linewidth=0.6, label="material point")
 		places["curves"].set_xlabel("strain of the block [%]")
