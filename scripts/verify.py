@@ -20,6 +20,7 @@ import tempfile
 
 import yade.config
 from yade.ddem import verification
+from yade.ddem.verification import freefem
 
 
 def main():
@@ -43,7 +44,7 @@ def main():
 		print(f"FAILED: {', '.join(failed)}")
 	if options.report:
 		from yade.ddem.verification import page
-		print(f"Report: {page.write(results, options.report, command(), versions())}")
+		print(f"Report: {page.write(results, options.report, command(), versions(results))}")
 	return 1 if failed else 0
 
 
@@ -109,16 +110,18 @@ def command():
 	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", script, *sys.argv[1:]])
 
 
-def versions():
+def versions(results):
 	import matplotlib
 	import numpy
 	import scipy
+	needed = {"FreeFem++": freefem.version()} if any(result.case.needs == "FreeFem++" for result in results) else {}
 	return {
 		"YADE": yade.config.version,
 		"Python": sys.version.split()[0],
 		"NumPy": numpy.__version__,
 		"SciPy": scipy.__version__,
-		"Matplotlib": matplotlib.__version__
+		"Matplotlib": matplotlib.__version__,
+		**needed
 	}
 
 

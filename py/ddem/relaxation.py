@@ -18,8 +18,10 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 	:yref:`DeformableEngine.gravity` are the loads; held nodes stay where they are, or move on as prescribed.
 
 	:param residual: wanted :func:`out_of_balance` [-]. Round-off of positions sets a floor of some 1e-15 over the strain.
-	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. 0.1 is fastest for compact samples, 0.3 to 0.5 for slender
-		ones, whose slow modes need some ten periods; much damping keeps stiff modes chattering and stops at a residual of 1e-4 or so.
+	:param damping: :yref:`DeformableEngine.damping` meanwhile [-]; what it was before is put back. 0.1 is fastest for compact samples: a block of 800 triangles
+		between platens is at 1e-6 after 1500 steps, with 0.3 after 4000, with 0.7 not after 6000. Bending is slow: a cantilever four times as long as high
+		takes 32 000 steps with 0.3, more with less damping and with more, because slow motion keeps stiff modes going; one twenty times as long stays at 4e-4
+		for 60 000 steps.
 	:param limit: steps after which to give up.
 	:raises ValueError: residual, damping or limit out of range, or no time step.
 	:raises RuntimeError: still out of balance after *limit* steps.

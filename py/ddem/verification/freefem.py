@@ -5,6 +5,7 @@ Debian's package is freefem++. Nothing of the plugin is in here: FreeFem++ gets 
 its own language, assembles and solves, and writes displacements.
 """
 import os
+import re
 import subprocess
 import tempfile
 
@@ -73,6 +74,16 @@ def run(script, nodes, triangles, tables=None, edges=()):
 		if done.returncode:
 			raise RuntimeError(f"FreeFem++ failed with exit code {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
 		return np.loadtxt(os.path.join(folder, "result.txt"))
+
+
+def version():
+	"""Version of FreeFem++, "" where it is missing."""
+	try:
+		done = subprocess.run(["FreeFem++"], capture_output=True, text=True, check=False)
+	except FileNotFoundError:
+		return ""
+	found = re.search(r"version (\S+)", done.stdout)
+	return found[1] if found else ""
 
 
 def _write_mesh(path, nodes, triangles, edges):
