@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from yade import DeformableElastMat, DeformableEngine, ForceResetter, InterpolatingDirectedForceEngine, O, ddem
 
@@ -20,7 +22,7 @@ SHAPES = {
 	"sine-squared": lambda t: np.sin(np.pi * t)**2,
 	"half-sine": lambda t: np.sin(np.pi * t),
 	"triangle": lambda t: 1 - np.abs(2 * t - 1),
-	"rectangle": lambda t: np.ones_like(t),
+	"trapezoid": lambda t: np.clip(10 * np.minimum(t, 1 - t), 0, 1),  # without jumps, whose momentum would depend on where the steps fall
 }
 
 
@@ -35,7 +37,9 @@ class Impulse:
 	def __post_init__(self):
 		if self.shape not in SHAPES:
 			raise ValueError(f"impulse: shape {self.shape!r} is unknown; there are {', '.join(SHAPES)}")
-		if not self.duration > 0:
+		if not 0 < abs(self.pressure) < np.inf:
+			raise ValueError(f"impulse: pressure = {self.pressure} Pa must be a number other than zero; a negative one pulls")
+		if not 0 < self.duration < np.inf:
 			raise ValueError(f"impulse: duration = {self.duration} s must be positive")
 		if not 0 < self.patch <= HEIGHT:
 			raise ValueError(f"impulse: patch = {self.patch} m must be positive and no larger than the side, {HEIGHT} m")
@@ -96,6 +100,16 @@ def central_node(mesh):
 	return int(np.argmin(np.linalg.norm(mesh.nodes - (WIDTH / 2, HEIGHT / 2), axis=1)))
 
 
+def regions(mesh, values, part=0.1):
+	"""Number of separate regions of the mesh in which nodal values have one sign and more than a part of the largest size: how rich a pattern is."""
+	sign = np.sign(values) * (np.abs(values) > part * np.abs(values).max())
+	first, second = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)]).T
+	joined = (sign[first] == sign[second]) & (sign[first] != 0)
+	edges = coo_matrix((np.ones(joined.sum()), (first[joined], second[joined])), (len(sign), len(sign)))
+	_, labels = connected_components(edges, directed=False)
+	return len(np.unique(labels[sign != 0]))
+
+
 def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instants=INSTANTS, step=0.8, recorders=(), files=50):
 	"""Build the block, push it and return its :class:`History`.
 
@@ -121,7 +135,7 @@ def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instant
 	O.dt = step * engine.criticalTimeStep()
 	book, writers = ddem.EnergyBalance(), [make(block) for make in recorders]
 
-	row, steps = central_node(block.mesh), round(until / O.dt)
+	row, steps = central_node(block.mesh), 2 * round(until / (2 * O.dt))
 	looks = {2 * round(instant / (2 * O.dt)) for instant in instants}
 	filed = set(np.linspace(0, steps, files, dtype=int).tolist()) if writers else set()
 	times, centre, fields = [], [], []

@@ -20,7 +20,8 @@ class Reference:
 
 def quadratic(history, every=2):
 	"""Quadratic triangles on the mesh of a :class:`impulse.History`, consistent mass, Newmark's mean acceleration with steps *every* times as long: for smooth
-	impulses a solution whose error is far below that of linear triangles (0.1 % of the deformation on the report's mesh, against the same on half the size)."""
+	impulses a solution whose error is far below that of linear triangles (on the report's mesh, at the centre, 0.3 % of the deformation until 50 µs and 0.6 % until
+	200 µs, against the same on half the size and against half the step)."""
 	mesh = history.mesh
 	system = dynamics.assemble(mesh.nodes, mesh.triangles, _MATERIAL, _loaded_edges(history), "P2")
 	steps = (len(history.times) - 1) // every
