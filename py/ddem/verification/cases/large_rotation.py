@@ -135,7 +135,7 @@ def pendulum(check, swing=2.5, gravity=4e4):
 		fig, (ax,) = tools.axes(height=58)
 		for (rotation, (time, angle)), marker in zip(drawn.items(), "o+"):
 			every = max(1, len(time) // 60)
-			ax.plot(time[::every], angle[::every], marker, markersize=3, markeredgewidth=0.6, label=rotation)
+			ax.plot(time[::every], angle[::every], marker, markersize=3.5, markerfacecolor="none", markeredgewidth=0.6, label=rotation)
 		u = np.linspace(0, 1.35, 400)
 		sn = ellipj(ellipk(np.sin(swing / 2)**2) * (1 + 4 * u), np.sin(swing / 2)**2)[0]
 		ax.plot(u, np.degrees(2 * np.arcsin(np.sin(swing / 2) * sn)), "k-", linewidth=0.7, label="exact")
