@@ -152,6 +152,14 @@ def test_measures_of_a_block_with_known_damage():
 	assert crushed.wave == pytest.approx(2400 * np.sqrt((30e9 + 4 / 3 * 26e9) / 2400) * 10)  # ρ c_p v of Table 1
 
 
+@pytest.mark.slow
+def test_the_time_step_follows_the_block_until_its_corners_have_turned_by_a_third_of_pi():
+	crushed = reinforced.run(until=2.5e-3)  # Zubelewicz (2018), section 4.3: "in the range π/3"
+	assert crushed.rotation(2.5e-3)[0] > np.pi / 3
+	assert crushed.run.energy_error < 1e-4
+	assert 0.3 < O.dt / crushed.run.dt < 0.7  # of triangles that have stretched to four times their size
+
+
 def test_without_the_bar_the_others_keep_their_fracture_energies():
 	energies = []
 	for bar in (True, False):

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
+from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
 
 from .. import ucs
 from ..runs import Run
@@ -138,7 +138,7 @@ def run(
 	:param until: end [s]
 	:param crack_band: see :func:`yade.ddem.append`; :data:`BAND` leaves the report's mesh as it is
 	:param rotation: treatment, see :yref:`DeformableEngine.rotation`
-	:param step: time step over the critical one
+	:param step: time step over the critical one, which falls as triangles stretch
 	:param dt: time step [s] instead, to compare two runs record by record
 	:param concrete: attributes of :yref:`ConcreteDamageMat` that differ from Tables 1 and 2
 	:param recorders: functions of the block that make a recorder, such as ``lambda block: vtk.Recorder(block, "out/block")``
@@ -149,7 +149,8 @@ def run(
 	block = ddem.append(mesh, {"": "concrete", "bar": "steel" if bar else "concrete"}, seed=seed, crack_band=crack_band)
 	platens = ddem.platens(block, velocity)
 	engine = DeformableEngine(rotation=rotation, label="deformable")
-	O.engines = [ForceResetter(), *platens.engines, engine]
+	followers = [] if dt else [DeformableTimeStepper(safety=step)]  # triangles stretch to several times their size while they turn
+	O.engines = [ForceResetter(), *platens.engines, *followers, engine]
 	critical = engine.criticalTimeStep()
 	O.dt = dt or step * critical
 	made = [make(block) for make in recorders]
