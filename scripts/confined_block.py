@@ -6,18 +6,18 @@ Run:      scripts/ddem run scripts/confined_block.py                      (a min
           scripts/ddem run scripts/confined_block.py --help               (all options)
 Writes:   a table here, and in out/confined_block: confined.png, a CSV of each test, and pressure-0.pvd … for ParaView.
 
-             v v v         A block 10 cm wide and 20 cm tall, plane strain, 800 triangles, Tables 1 and 2. A pressure grows on both sides; then two platens move
-          |=========|      towards each other at 0.5 m/s each, a strain rate of 5 /s. Each pressure is tested twice: with rough ends and random fracture energies,
-       -> |         | <-   and with smooth ends and equal ones, where the block deforms as one point of the material does.
+             v v v         A block 10 cm wide and 20 cm tall, plane strain, 800 triangles, Tables 1 and 2. A pressure grows on both sides; then two platens
+          |=========|      move towards each other at 0.5 m/s each, a strain rate of 5 /s. Each pressure is tested twice: with rough ends and random fracture
+       -> |         | <-   energies, and with smooth ends and equal ones, where the block deforms as one point of the material does.
        -> |         | <-
           |=========|
              ^ ^ ^
 
-Expect:   with smooth ends the strengths of a material point in plane strain on the same path, 60, 145, 221 and 290 MPa at 0, 20, 40 and 60 MPa, within 1 %; what is
-          missing is inertia, since the sides are set moving (5 % with --velocity 1, 0.3 % with 0.25). A cylinder in a pressure cell bears more, 105 to 329 MPa
-          at 10 /s: in plane strain σ_zz is another than the pressure, 10 MPa without any, 75 MPa under 60. Rough ends add 4 to 5 MPa, at no pressure 7 without and 4
-          with the random fracture energies. The stress left after the peak grows with the pressure; damage is in two crossing bands that leave wedges at the ends
-          whole. Their edges at 45° are those of the cells: see scripts/mesh_orientation.py.
+Expect:   with smooth ends the strengths of a material point in plane strain on the same path, 60, 145, 221 and 290 MPa at 0, 20, 40 and 60 MPa, within 1 %;
+          what is missing is inertia, since the sides are set moving (5 % with --velocity 1, 0.3 % with 0.25). A cylinder in a pressure cell bears more, 105 to
+          329 MPa at 10 /s: in plane strain σ_zz is another than the pressure, 10 MPa without any, 75 MPa under 60. Rough ends add 4 to 5 MPa, at no pressure 7
+          without and 4 with the random fracture energies. The stress left after the peak grows with the pressure; damage is in two crossing bands that leave
+          wedges at the ends whole. Their edges at 45° are those of the cells: see scripts/mesh_orientation.py.
 """
 import math
 import os

@@ -9,11 +9,11 @@ Writes:   a table here, and in out/spall_bar: spall.png, a CSV of the free end's
      v(t)  |                             | free     end moves as v sin²(π t/40 µs), 8 m/s at most, a pulse of 100 MPa, and stops. The pulse comes back from the
         -> |o o o o o o o o o o o o o o o|          free end as tension. The same is done with elastic concrete.
 
-Expect:   the elastic bar returns the pulse whole: Novikov's ½ ρ c Δu_fs gives its largest tension to 0.02 %. Concrete bears 19 MPa, and breaks in three planes 5 to
-          7 cm from the free end, just beyond cT/4 = 52 mm, the nearest place that feels the whole pulse; what is beyond flies off with part of the pulse.
-          ½ ρ c Δu_fs gives 38 MPa, and is no spall strength here: the formula takes the bar to be elastic until it breaks at once, but this law flows at any tension.
-          Of the 38, 29 belong to the fall between the two characteristics through the largest tension, and 10 of these are flow on the way (29 − 10 = 19); the other
-          9 come later, from a wide zone that flows and pulls. The brittler, the closer: 6.5 and 5.6 MPa with --energy 1e3 --speed 4.
+Expect:   the elastic bar returns the pulse whole: Novikov's ½ ρ c Δu_fs gives its largest tension to 0.02 %. Concrete bears 19 MPa, and breaks in three planes
+          5 to 7 cm from the free end, just beyond cT/4 = 52 mm, the nearest place that feels the whole pulse; what is beyond flies off with part of the pulse.
+          ½ ρ c Δu_fs gives 38 MPa, and is no spall strength here: the formula takes the bar to be elastic until it breaks at once, but this law flows at any
+          tension. Of the 38, 29 belong to the fall between the two characteristics through the largest tension, and 10 of these are flow on the way (29 − 10 =
+          19); the other 9 come later, from a wide zone that flows and pulls. The brittler, the closer: 6.5 and 5.6 MPa with --energy 1e3 --speed 4.
 """
 import os
 

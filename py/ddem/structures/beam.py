@@ -1,8 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Notched beam in three-point bending, in plane strain: a crack grows from the notch to the load.
 
-The beam stands on two nodes and is pushed by the nodes of a strip on the top, whose speed grows to 0.05 m/s. Inertia is measured: by the difference between the load
-and the reactions of the supports, and by the kinetic energy. Around supports and load the concrete is elastic, so that it does not crush there.
+The beam stands on two nodes and is pushed by the nodes of a strip on the top, whose speed grows to 0.05 m/s. Inertia is measured: by the difference between the
+load and the reactions of the supports, and by the kinetic energy. Around supports and load the concrete is elastic, so that it does not crush there.
 """
 from dataclasses import dataclass
 
@@ -82,7 +82,8 @@ def mesh(size=0.005, coarse=0.015, seed=None):
 
 
 def opening_compliance():
-	"""Opening of the notch's mouth over the load per thickness [m²/N] of the elastic beam: Tada, Paris and Irwin, The stress analysis of cracks handbook (1985), p. 2.16.
+	"""Opening of the notch's mouth over the load per thickness [m²/N] of the elastic beam: Tada, Paris and Irwin, The stress analysis of cracks handbook (1985),
+	p. 2.16.
 
 	For a sharp crack and a span of four times the height, 4 σ a V₁(a/W)/E' with σ = 3PS/2W² and V₁ within 1 %; E' = E/(1 − ν²) in plane strain.
 	"""

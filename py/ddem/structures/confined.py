@@ -103,8 +103,8 @@ def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0
 	rows = advance(steps, records, row, writers)
 	strains, stresses, laterals, damages = np.array(rows).T
 	return History(
-		block.mesh, pressure, 2 * velocity / HEIGHT, strains, stresses, laterals, np.array(block.positions), np.array(block.sub_element_damage), damages[stresses.argmax()],
-		book.largest
+		block.mesh, pressure, 2 * velocity / HEIGHT, strains, stresses, laterals, np.array(block.positions), np.array(block.sub_element_damage),
+		damages[stresses.argmax()], book.largest
 	)
 
 
@@ -136,8 +136,8 @@ def _pressing(block, pressure):
 def material_point(pressure, rate, strain=0.01):
 	"""The same test on one point in plane strain: axial strains [-], axial stresses and σ_zz [Pa], compression positive, from the start of the platens.
 
-	Its ε_zz stays zero from the beginning, so σ_zz is what the law makes of it: with the concrete of Tables 1 and 2, at the peak, 10, 31, 53 and 75 MPa under 0, 20, 40
-	and 60 MPa at 10 /s. That is why strengths are not those of a cylinder in a pressure cell (105, 187, 261 and 329 MPa).
+	Its ε_zz stays zero from the beginning, so σ_zz is what the law makes of it: with the concrete of Tables 1 and 2, at the peak, 10, 31, 53 and 75 MPa under 0,
+	20, 40 and 60 MPa at 10 /s. That is why strengths are not those of a cylinder in a pressure cell (105, 187, 261 and 329 MPa).
 	"""
 	from ..materialpoint import MaterialPoint
 	point = MaterialPoint()

@@ -8,7 +8,10 @@ from . import confined
 
 
 def strength(rough, smooth):
-	"""Stress over strain, strength over pressure, and damage at the end; *rough* and *smooth* are lists of :class:`confined.History`, in order of their pressures."""
+	"""Stress over strain, strength over pressure, and damage at the end.
+
+	:param rough, smooth: lists of :class:`confined.History`, in order of their pressures
+	"""
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE, 130)
 		fig.set_layout_engine("constrained")

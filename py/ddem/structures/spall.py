@@ -1,7 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Spall: a compression pulse runs along a bar, comes back from the free end as tension, and opens a crack.
 
-One row of crossed cells whose long sides slide on rollers: plane waves, as in plate impact. The left end moves as the pulse says and stops; the right end is free.
+One row of crossed cells whose long sides slide on rollers: plane waves, as in plate impact. The left end moves as the pulse says and stops; the right end is
+free.
 """
 from dataclasses import dataclass
 
@@ -31,8 +32,8 @@ class History:
 	def pullback(self):
 		"""(largest velocity of the free end, the minimum after it) [m/s] and their rows.
 
-		The first minimum that lies 8 % of the largest velocity below it, so that ringing behind a steep front does not count, and after which it rises by 1 % again; where
-		it never does so, the lowest velocity of the record.
+		The first minimum that lies 8 % of the largest velocity below it, so that ringing behind a steep front does not count, and after which it rises by 1 % again;
+		where it never does so, the lowest velocity of the record.
 		"""
 		top = int(self.surface.argmax())
 		after, lowest = self.surface[top:], None
@@ -71,8 +72,9 @@ class History:
 	def matched_stress(self):
 		"""(½ ρ c Δu, ½ ρ c² (I₋ − I₊)) [Pa], whose difference is the largest tension σ in any material; NaN where the record is too short.
 
-		Where x = ± c t, σ ∓ ρ c u changes by −ρ c² I±, I being the growth on that way of ε − σ/ρc², the strain that is not linear elastic. From the free end (σ = 0) to
-		the place of the largest tension and back again, 2 σ = ρ c Δu − ρ c² (I₋ − I₊), with the fall Δu of the free end's velocity between the two :attr:`arrivals`.
+		Where x = ± c t, σ ∓ ρ c u changes by −ρ c² I±, I being the growth on that way of ε − σ/ρc², the strain that is not linear elastic. From the free end (σ = 0)
+		to the place of the largest tension and back again, 2 σ = ρ c Δu − ρ c² (I₋ − I₊), with the fall Δu of the free end's velocity between the two
+		:attr:`arrivals`.
 		"""
 		_, row, cell = self.tension
 		rate = np.gradient(self.strain - self.stress / (IMPEDANCE * WAVE), self.times, axis=0)
