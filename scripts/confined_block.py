@@ -15,8 +15,8 @@ Writes:   a table here, and in out/confined_block: confined.png, a CSV of each t
 
 Expect:   with smooth ends the strengths of a material point in plane strain on the same path, 60, 145, 221 and 290 MPa at 0, 20, 40 and 60 MPa, within 1 %;
           what is missing is inertia, since the sides are set moving (5 % with --velocity 1, 0.3 % with 0.25). A cylinder in a pressure cell bears more, 105 to
-          329 MPa at 10 /s: in plane strain σ_zz is another than the pressure, 10 MPa without any, 75 MPa under 60. Rough ends add 4 to 5 MPa, at no pressure 7
-          without and 4 with the random fracture energies. The stress left after the peak grows with the pressure; damage is in two crossing bands that leave
+          329 MPa at 10 /s: in plane strain σ_zz is another than the pressure, 10 MPa without any, 75 MPa under 60. Rough ends add 3 to 5 MPa, at no pressure 7
+          without and 3 with the random fracture energies. The stress left after the peak grows with the pressure; damage is in two crossing bands that leave
           wedges at the ends whole. Their edges at 45° are those of the cells: see scripts/mesh_orientation.py.
 """
 import math

@@ -37,7 +37,7 @@ def notched_beam(check, size=0.01, elastic_size=0.005):
 	elastic fracture mechanics (ASTM E399, bend specimen) with the energy that a band of the law takes until it is open by 0.1 mm.
 
 	Expect: the stiffness within 0.5 % (the push still shakes the beam); the opening within 3 %, since the formula is for a sharp crack and triangles of 5 mm at
-	the tip are too stiff (10 mm: 10 %); the load between the two theories; load and reactions within 6 % of it; the crack within a triangle's size of
+	the tip are too stiff (10 mm: 10 %); the load between the two theories; the reactions within 6 % of the load; the crack within a triangle's size of
 	the middle.
 	"""
 	expected = stiffness(elastic_size)
