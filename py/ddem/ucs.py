@@ -124,7 +124,7 @@ class CompressionTest:
 		start, busy = time.perf_counter(), time.process_time()
 		try:
 			with tqdm(total=steps, unit="step", desc=self.specimen.title, mininterval=0.5, disable=None if progress else True) as self._bar:
-				loading.run(until=self._end, progress=False)  # in time, since a time stepper may change O.dt
+				loading.run(until=self._end - 0.5 * O.dt, progress=False)  # to the nearest step; in time, since a time stepper may change O.dt
 		finally:
 			running = None
 		wall, busy = time.perf_counter() - start, time.process_time() - busy

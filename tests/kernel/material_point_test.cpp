@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 namespace {
 
@@ -41,6 +43,31 @@ Curve axial(double rate, double strain, double step, double confinement = 0, boo
 		curve.lateral = std::max(curve.lateral, std::abs(p.state.stress.xx + confinement));
 	}
 	return curve;
+}
+
+// A step whose free strains move too far finds another branch; such steps are halved, so that coarse paths stay on the curve of fine ones.
+TEST(MaterialPointSteps, thatAreCoarseStayOnTheCurveOfFineOnes)
+{
+	for (const bool planeStrain : { false, true })
+		for (const double rate : { -0.1, -1., -10. }) {
+			const auto stressAt = [&](double step) {
+				MaterialPoint      point;
+				const PlaneTensor  target { 0, -0.012, 0, 0 };
+				const std::size_t  steps = static_cast<std::size_t>(0.012 / step + 0.5);
+				std::vector<double> stress;
+				for (const PathPoint& p : point.run({ { s, e, planeStrain ? e : s, e }, target, -0.012 / rate, steps }, steps / 120))
+					stress.push_back(p.state.stress.yy);
+				return stress;
+			};
+			const auto   fine = stressAt(1e-6);
+			const double peak = -*std::min_element(fine.begin(), fine.end());
+			for (const double step : { 1e-5, 1e-4 }) {
+				const auto coarse = stressAt(step);
+				ASSERT_EQ(coarse.size(), fine.size());
+				for (std::size_t i = 0; i < fine.size(); i++)
+					EXPECT_NEAR(coarse[i], fine[i], 0.005 * peak) << (planeStrain ? "plane strain, " : "uniaxial, ") << rate << " /s, step " << step << ", record " << i;
+			}
+		}
 }
 
 // Strengths of the concrete of Zubelewicz (2018), Tables 1 and 2 untouched, with the closures stated in ConcreteFlow.hpp and PrincipalStresses.hpp. The numbers are

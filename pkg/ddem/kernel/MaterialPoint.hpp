@@ -28,7 +28,7 @@ struct PathPoint {
 };
 
 /// Drives advanceConcrete along legs. Strains that the path leaves free are found in every step by Newton's method so that their stresses meet the
-/// path within `stressTolerance`; a step that does not converge is halved.
+/// path within `stressTolerance`; a step that does not converge, or in which a free strain changes by more than 2e-5, is halved.
 class MaterialPoint {
 public:
 	/// `effects` is a mask of ConcreteEffects; `damage` is Ω_0, pre-existing damage (positive semi-definite).
