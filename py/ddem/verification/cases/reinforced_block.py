@@ -21,9 +21,10 @@ def reinforced_block(check):
 	Reference: the elastic wave ρ c_p v below the middle of the platen before the release from the sides is there; work as the integral of the force on the top;
 	the first law; symmetry; the statements of the report.
 
-	Expect: 125 MPa of the wave within 1 %; the energy book closes to 10⁻⁵; damage begins in an upper corner; less than 3 % of the wave is left after 0.2 ms, and
-	wedges at both ends with a mean damage below 0.1. The sharp 45° of their borders are diagonals of the mesh. Not confirmed: by 0.1 ms the lower half is as
-	damaged as the upper one, and right below the bar damage is larger than without it, not smaller.
+	Expect: 125 MPa of the wave within 1 %; the energy book closes to 5·10⁻⁵ in time steps that follow the stretch of triangles (to 10⁻⁶ in constant ones); damage
+	begins in an upper corner; less than 3 % of the wave is left after 0.2 ms, and wedges at both ends with a mean damage below 0.1. The sharp 45° of their borders
+	are diagonals of the mesh. Not confirmed: by 0.1 ms the lower half is as damaged as the upper one, and right below the bar damage is larger than without it, not
+	smaller.
 	"""
 	early = reinforced.run(size=0.005, seed=None, until=8e-6, concrete=spall.OFF, recorders=[reinforced.Fields])
 	x, y = early.mesh.centroids.T
@@ -44,7 +45,7 @@ def reinforced_block(check):
 	first, final = crushed[0], reinforced.FINAL
 	work = np.trapezoid(np.append(first.stress[0], first.stress), np.append(0, first.times)) * reinforced.WIDTH * first.velocity
 	check("work put in until 0.6 ms [J/m]", first.run.energy("input")[-1], work, 0.01, "integral of the stress on the top, in steps of 0.5 µs")
-	check("error of the energy book [-]", max(one.run.energy_error for one in crushed), 0, 1e-5, "first law", scale=1)
+	check("error of the energy book [-]", max(one.run.energy_error for one in crushed), 0, 5e-5, "first law", scale=1)
 	damages = np.array([snapshot.damage for snapshot in first.run.snapshots])
 	check("largest healing between two snapshots [-]", max(-np.diff(damages, axis=0).min(), 0), 0, 1e-12, "damage only grows (eq. 8)", scale=1)
 
