@@ -59,7 +59,7 @@ def read_options():
 	)
 	which = parser.add_mutually_exclusive_group()
 	which.add_argument("--list", action="store_true", help="name the cases, and run none")
-	which.add_argument("--case", nargs="+", metavar="NAME", help="run these cases")
+	which.add_argument("--case", nargs="+", action="extend", metavar="NAME", help="run these cases")
 	which.add_argument("--all", action="store_true", help="run the slow cases as well")
 	parser.add_argument("--json", metavar="FILE", help="write all comparisons into a file")
 	parser.add_argument("--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing")
