@@ -169,6 +169,8 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 		const Real own       = shape.fractureEnergy;
 		if (!std::isfinite(own) || own == 0) reject(b, "fractureEnergy = " + std::to_string(own) + " J/m³ must be positive (or negative for the material's)");
 		s.fractureEnergy.push_back(own > 0 ? own : (concrete ? concrete->fractureEnergy : 0));
+		if (!(std::isfinite(shape.bandFactor) && shape.bandFactor > 0)) reject(b, "bandFactor = " + std::to_string(shape.bandFactor) + " must be positive (1: no crack band)");
+		s.bandEnergy.push_back(s.fractureEnergy.back() * shape.bandFactor);
 		if (!plain)
 			for (int k = 0; k < 3; k++) {
 				ddem::ConcreteState state {};
@@ -176,6 +178,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 				s.concreteState.push_back(state);
 			}
 	}
+	if (s.bandEnergy == s.fractureEnergy) std::vector<double>().swap(s.bandEnergy); // no crack band
 	for (std::size_t i = 0; i < made.nodes.size(); i++)
 		if (s.node.mass[i] == 0) reject(*made.nodes[i], "this DeformableNode belongs to no DeformableTriangle, so it has no mass; erase it");
 

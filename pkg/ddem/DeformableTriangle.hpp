@@ -33,6 +33,7 @@ public:
 		((Vector3i,nodes,Vector3i(-1,-1,-1),,"Ids of the three node bodies, counter-clockwise in the xy plane."))
 		((Real,thickness,1,,"Thickness [m] of the plane-strain slice."))
 		((Real,fractureEnergy,-1,,"This triangle's own fracture energy :math:`G_f` [J/m³]; negative: that of its :yref:`ConcreteDamageMat`."))
+		((Real,bandFactor,1,,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
 		((Matrix3r,initialDamage,Matrix3r::Zero(),,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
 		createIndex();,
 		.add_property("stress",&DeformableTriangle::stress,"Stress [Pa] of the three sub-elements, list of Matrix3.")

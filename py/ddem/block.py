@@ -19,8 +19,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 		*spread* G_f, not below *floor* G_f (Zubelewicz 2018, section 4.3). None: all have the material's G_f.
 	:param thickness: of the plane-strain slice [m].
 	:param position: offset added to the mesh's coordinates [m].
-	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; others get as much more or less as makes the energy of a crack per area
-		the same (see :mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
+	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; once flow has localised, others get as much more or less as makes the
+		energy of a crack per area the same (see :mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
 	:returns: :class:`Block`
 	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another kind, thickness, seed, spread, floor, position or
 		crack_band out of range. Nothing is appended then.
@@ -30,7 +30,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	by_region = _materials_by_region(mesh, materials)
 	if not 0 < thickness < math.inf:
 		raise ValueError(f"thickness = {thickness} m must be positive and finite")
-	energies = _fracture_energies(mesh, by_region, seed, spread, floor, crack_band)
+	energies = _fracture_energies(mesh, by_region, seed, spread, floor)
+	bands = np.ones(len(mesh.triangles)) if crack_band is None else crackband.factors(mesh.areas, crack_band)
 	offset = np.asarray(position, float)
 	if offset.shape != (3, ) or not np.isfinite(offset).all():
 		raise ValueError(f"position = {position} must be three finite numbers [m]")
@@ -41,8 +42,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	node_ids = np.array(O.bodies.append(nodes), dtype=int)
 	triangles = []
 	centres = mesh.nodes[mesh.triangles].mean(axis=1)
-	for triangle, centre, region, energy in zip(mesh.triangles, centres, mesh.regions, energies):
-		shape = DeformableTriangle(nodes=Vector3i(*(int(node_ids[v]) for v in triangle)), thickness=thickness, fractureEnergy=energy)
+	for triangle, centre, region, energy, band in zip(mesh.triangles, centres, mesh.regions, energies, bands.tolist()):
+		shape = DeformableTriangle(nodes=Vector3i(*(int(node_ids[v]) for v in triangle)), thickness=thickness, fractureEnergy=energy, bandFactor=band)
 		body = _body(shape, Vector3(centre[0] + offset[0], centre[1] + offset[1], offset[2]), "zXY")
 		body.material = by_region[region]
 		triangles.append(body)
@@ -237,10 +238,8 @@ def _materials_by_region(mesh, materials):
 	return found
 
 
-def _fracture_energies(mesh, by_region, seed, spread, floor, crack_band):
+def _fracture_energies(mesh, by_region, seed, spread, floor):
 	factors = np.ones(len(mesh.triangles))
-	if crack_band is not None:
-		factors *= crackband.factors(mesh.areas, crack_band)
 	if seed is not None:
 		if not isinstance(seed, numbers.Integral) or seed < 0:
 			raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more (or None: every triangle has its material's fracture energy)")
@@ -248,7 +247,7 @@ def _fracture_energies(mesh, by_region, seed, spread, floor, crack_band):
 			raise ValueError(f"spread = {spread} must be finite and not negative and floor = {floor} must lie in (0, 1], both as shares of the mean fracture energy")
 		factors *= np.maximum(np.random.default_rng(seed).normal(1.0, spread, len(factors)), floor)
 	energies = np.full(len(mesh.triangles), -1.0)  # the material's own
-	if seed is None and crack_band is None:
+	if seed is None:
 		return energies.tolist()
 	for index, material in enumerate(by_region):
 		if isinstance(material, ConcreteDamageMat):

@@ -97,14 +97,15 @@ class MaterialPoint:
 		:yref:`ConcreteDamageMat` (missing ones keep their default).
 	:param effects: names of the effects to simulate, of :data:`EFFECTS`. None: those that the material switches on (all, for a dict).
 	:param damage: pre-existing damage tensor Ω_0 (xx, yy, zz, xy) [-].
-	:raises ValueError: bad parameter, effect or damage.
+	:param band_factor: of a crack band, on the fracture energy once flow has localised [-], see :mod:`crackband`.
+	:raises ValueError: bad parameter, effect, damage or factor.
 	"""
 
-	def __init__(self, material=None, effects=None, damage=(0, 0, 0, 0)):
+	def __init__(self, material=None, effects=None, damage=(0, 0, 0, 0), band_factor=1.0):
 		self.parameters = _parameters(material)
 		self.effects = _effects(material, effects)
 		mask = sum(_materialpoint.effects[name] for name in self.effects) | _materialpoint.energy
-		self._point = _materialpoint.Point(parameters=self.parameters, effects=mask, damage=_tensor(damage, "damage"))
+		self._point = _materialpoint.Point(parameters=self.parameters, effects=mask, damage=_tensor(damage, "damage"), bandFactor=_number(band_factor, "band_factor"))
 
 	@property
 	def state(self):

@@ -17,7 +17,7 @@ using namespace yade::ddem::test;
 
 struct Sample {
 	std::vector<RandomPath>    paths;
-	std::vector<double>        energies;
+	std::vector<double>        energies, bands;
 	std::vector<ConcreteState> states;
 
 	Sample(Random& random, std::size_t count)
@@ -26,6 +26,7 @@ struct Sample {
 		for (std::size_t i = 0; i < count; ++i) {
 			paths.emplace_back(random, i % 7 == 0 ? 0 : 3e-3, i % 2 == 0);
 			energies.push_back(random.number(16e3, 200e3));
+			bands.push_back(random.number(0.2, 5) * energies.back());
 			if (i % 3 == 0) states[i].damage = random.damage(2);
 		}
 	}
@@ -45,9 +46,9 @@ void expectBlockEqualsSingle(const PreparedConcrete& concrete, unsigned effects,
 	std::vector<ConcreteState> single = sample.states;
 	for (int k = 1; k <= 150; ++k) {
 		const auto strains = sample.strains(k / 150.);
-		block(concrete, sample.energies.data(), strains.data(), 2e-6, sample.states.data(), strains.size());
+		block(concrete, { sample.energies.data(), sample.bands.data() }, strains.data(), 2e-6, sample.states.data(), strains.size());
 		for (std::size_t i = 0; i < single.size(); ++i)
-			concreteUpdate(effects)(concrete, sample.energies[i], strains[i], 2e-6, single[i]);
+			concreteUpdate(effects)(concrete, { sample.energies[i], sample.bands[i] }, strains[i], 2e-6, single[i]);
 	}
 	for (std::size_t i = 0; i < single.size(); ++i) {
 		const ConcreteState &a = sample.states[i], &b = single[i];
@@ -89,12 +90,13 @@ TEST(ConcreteBlock, neighboursAndPlaceDoNotMatterBitwise)
 	Sample                    backward = forward;
 	std::reverse(backward.paths.begin(), backward.paths.end());
 	std::reverse(backward.energies.begin(), backward.energies.end());
+	std::reverse(backward.bands.begin(), backward.bands.end());
 	std::reverse(backward.states.begin(), backward.states.end());
 	for (int k = 1; k <= 150; ++k) {
 		const auto a = forward.strains(k / 150.), b = backward.strains(k / 150.);
-		block(concrete, forward.energies.data(), a.data(), 2e-6, forward.states.data(), a.size());
+		block(concrete, { forward.energies.data(), forward.bands.data() }, a.data(), 2e-6, forward.states.data(), a.size());
 		for (std::size_t i = 0; i < b.size(); ++i) // one at a time
-			block(concrete, &backward.energies[i], &b[i], 2e-6, &backward.states[i], 1);
+			block(concrete, { &backward.energies[i], &backward.bands[i] }, &b[i], 2e-6, &backward.states[i], 1);
 	}
 	std::reverse(backward.states.begin(), backward.states.end());
 	EXPECT_EQ(std::memcmp(forward.states.data(), backward.states.data(), forward.states.size() * sizeof(ConcreteState)), 0);

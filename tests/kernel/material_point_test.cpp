@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <vector>
 
@@ -68,6 +69,37 @@ TEST(MaterialPointSteps, thatAreCoarseStayOnTheCurveOfFineOnes)
 					EXPECT_NEAR(coarse[i], fine[i], 0.005 * peak) << (planeStrain ? "plane strain, " : "uniaxial, ") << rate << " /s, step " << step << ", record " << i;
 			}
 		}
+}
+
+// With a crack band a crack takes the same energy per area in rows of elements of any height, and the strength stays.
+TEST(CrackBand, keepsStrengthAndTheEnergyPerArea)
+{
+	ConcreteParameters brittle;
+	brittle.fractureEnergy = 8e3; // at a height of 10 mm
+	struct Crack {
+		double strength = 0, energy = 0; // [Pa], [J/m²] until it is open by 0.1 mm
+	};
+	const auto pull = [&](double height, double bandFactor) {
+		MaterialPoint point(brittle, ConcreteEffects::All, {}, bandFactor);
+		const double  strain = 1e-4 / height;
+		const auto    steps  = static_cast<std::size_t>(strain / 2e-6);
+		Crack         crack;
+		double        before = 0;
+		for (const PathPoint& p : point.run({ { s, e, s, e }, { 0, strain, 0, 0 }, strain, steps })) {
+			crack.strength = std::max(crack.strength, p.state.stress.yy);
+			crack.energy += 0.5 * (before + p.state.stress.yy) * 1e-4 / double(steps);
+			before = p.state.stress.yy;
+		}
+		return crack;
+	};
+	const Crack reference = pull(0.01, 1);
+	for (const double height : { 0.02, 0.005, 0.0025 }) {
+		const Crack corrected = pull(height, 0.01 / height), plain = pull(height, 1);
+		EXPECT_NEAR(corrected.strength, reference.strength, 1e-3 * reference.strength) << height;
+		EXPECT_NEAR(corrected.energy, reference.energy, 0.15 * reference.energy) << height; // what is taken before flow localises stays per volume
+		EXPECT_GT(std::abs(plain.energy - reference.energy), 2.5 * std::abs(corrected.energy - reference.energy)) << height;
+	}
+	EXPECT_THROW(MaterialPoint(brittle, ConcreteEffects::All, {}, 0), std::invalid_argument);
 }
 
 // Strengths of the concrete of Zubelewicz (2018), Tables 1 and 2 untouched, with the closures stated in ConcreteFlow.hpp and PrincipalStresses.hpp. The numbers are

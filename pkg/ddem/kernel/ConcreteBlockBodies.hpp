@@ -55,7 +55,7 @@ template <class Batch> inline void storeNumbers(const Batch& value, double* firs
 
 /// Batch::size sub-elements at once; memory that the effects do not use is neither read nor written.
 template <unsigned effects, class Batch>
-inline void advanceBatch(const PreparedConcrete& concrete, const double* fractureEnergy, const PlaneTensor* newStrain, double dt, ConcreteState* state)
+inline void advanceBatch(const PreparedConcrete& concrete, const FractureEnergies& fractureEnergy, const PlaneTensor* newStrain, double dt, ConcreteState* state)
 {
 	constexpr std::size_t stride   = sizeof(ConcreteState) / sizeof(double);
 	constexpr bool        flows    = effects & ConcreteEffects::Flow;
@@ -78,7 +78,8 @@ inline void advanceBatch(const PreparedConcrete& concrete, const double* fractur
 	} else
 		s.plasticDissipation = s.damageDissipation = s.stiffeningEnergy = zero;
 
-	advanceConcrete<effects>(concrete, Batch::load_unaligned(fractureEnergy), loadTensors<Batch>(&newStrain->xx, 4), dt, s);
+	const FractureEnergyOf<Batch> energy(Batch::load_unaligned(fractureEnergy.spread), Batch::load_unaligned(fractureEnergy.band));
+	advanceConcrete<effects>(concrete, energy, loadTensors<Batch>(&newStrain->xx, 4), dt, s);
 
 	storeTensors(s.stress, &state->stress.xx, stride);
 	storeTensors(s.strain, &state->strain.xx, stride);
@@ -95,25 +96,26 @@ inline void advanceBatch(const PreparedConcrete& concrete, const double* fractur
 
 template <unsigned effects, class Batch>
 void advanceBlock(
-        const PreparedConcrete& concrete, const double* fractureEnergy, const PlaneTensor* newStrain, double dt, ConcreteState* state, std::size_t count)
+        const PreparedConcrete& concrete, const FractureEnergies& fractureEnergy, const PlaneTensor* newStrain, double dt, ConcreteState* state, std::size_t count)
 {
 	constexpr std::size_t width = Batch::size;
 	std::size_t           i     = 0;
 	for (; i + width <= count; i += width)
-		advanceBatch<effects, Batch>(concrete, fractureEnergy + i, newStrain + i, dt, state + i);
+		advanceBatch<effects, Batch>(concrete, fractureEnergy.from(i), newStrain + i, dt, state + i);
 	if (i == count) return;
 
 	// the rest goes through a full batch too, with its last element repeated: the same instructions give the same result at any place
-	double        energies[width];
+	double        spread[width], band[width];
 	PlaneTensor   strains[width];
 	ConcreteState states[width];
 	for (std::size_t lane = 0; lane < width; ++lane) {
 		const std::size_t from = i + lane < count ? i + lane : count - 1;
-		energies[lane]         = fractureEnergy[from];
+		spread[lane]           = fractureEnergy.spread[from];
+		band[lane]             = fractureEnergy.band[from];
 		strains[lane]          = newStrain[from];
 		states[lane]           = state[from];
 	}
-	advanceBatch<effects, Batch>(concrete, energies, strains, dt, states);
+	advanceBatch<effects, Batch>(concrete, { spread, band }, strains, dt, states);
 	for (std::size_t lane = 0; i + lane < count; ++lane)
 		state[i + lane] = states[lane];
 }

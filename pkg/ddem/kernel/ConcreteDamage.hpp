@@ -16,6 +16,23 @@ template <class Number> struct DamageMeasure {
 	Number                integrity; ///< 1 − η_0 [-]
 };
 
+/// G_f of a sub-element [J/m³]: while flow is spread over the material, and once it has localised in a band of one row of elements. They differ where a crack band
+/// is asked for: then the energy of a crack per area does not depend on the size of the elements (Bažant and Oh 1983), nor does the strength, which the first rules.
+template <class Number> struct FractureEnergyOf {
+	Number spread, band;
+
+	FractureEnergyOf(const Number& both) // NOLINT: a number is meant to do for both
+	        : spread(both)
+	        , band(both)
+	{
+	}
+	FractureEnergyOf(const Number& first, const Number& second)
+	        : spread(first)
+	        , band(second)
+	{
+	}
+};
+
 /// η_0 = (1 − r) Ω_D^n_f/(1 + Ω_D^n_f), Ω_D = √(Ω:Ω), with the residual r that keeps strength and stiffness above zero (r = 0 in Zubelewicz (2018)).
 template <class Number> inline DamageMeasure<Number> measureDamage(const PreparedConcrete& concrete, const PlaneTensorOf<Number>& damage)
 {

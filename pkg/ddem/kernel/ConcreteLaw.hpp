@@ -36,9 +36,9 @@ template <class Number> struct FlowIncrement {
 /// of the predictor, `strain` = ė_N dt.
 template <unsigned effects, class Number, class Elasticity>
 inline FlowIncrement<Number> flowIncrement(
-        const PreparedConcrete&      concrete,
-        const Number&                fractureEnergy,
-        const PlaneTensorOf<Number>& predicted,
+        const PreparedConcrete&         concrete,
+        const FractureEnergyOf<Number>& fractureEnergy,
+        const PlaneTensorOf<Number>&    predicted,
         const Elasticity&            stressOf,
         const DamageMeasure<Number>& damage,
         const Number&                open,
@@ -63,7 +63,8 @@ inline FlowIncrement<Number> flowIncrement(
 		// where there is no damage yet, the largest stress says whether its crack would be open
 		const Number growing = select(damage.integrity < 1, open, select(principal.s1 >= 0, one, zero));
 		const Number work    = select(yields, solution.equivalent * plastic, zero);
-		increment.damage     = damageGrowth(concrete, fractureEnergy, damageTensor(principal, friction), growing, work);
+		const Number energy  = select(damage.integrity > concrete.localisedIntegrity, fractureEnergy.spread, fractureEnergy.band);
+		increment.damage     = damageGrowth(concrete, energy, damageTensor(principal, friction), growing, work);
 	}
 	return increment;
 }
@@ -74,11 +75,11 @@ inline FlowIncrement<Number> flowIncrement(
 /// a SIMD batch; a lane of a batch does not feel the others.
 template <unsigned effects, class Number>
 inline void advanceConcrete(
-        const PreparedConcrete&      concrete,
-        typename Same<Number>::Type  fractureEnergy,
-        const PlaneTensorOf<Number>& newStrain,
-        double                       dt,
-        ConcreteStateOf<Number>&     state)
+        const PreparedConcrete&                              concrete,
+        const FractureEnergyOf<typename Same<Number>::Type>& fractureEnergy,
+        const PlaneTensorOf<Number>&                         newStrain,
+        double                                               dt,
+        ConcreteStateOf<Number>&                             state)
 {
 	constexpr bool flows = effects & ConcreteEffects::Flow, damages = effects & ConcreteEffects::Damage,
 	               stiffens = effects & ConcreteEffects::EquationOfState, books = effects & ConcreteEffects::Energy;
@@ -133,7 +134,7 @@ inline void advanceConcrete(
 	state = next;
 }
 
-using ConcreteUpdate = void (*)(const PreparedConcrete&, double fractureEnergy, const PlaneTensor& newStrain, double dt, ConcreteState&);
+using ConcreteUpdate = void (*)(const PreparedConcrete&, const FractureEnergyOf<double>&, const PlaneTensor& newStrain, double dt, ConcreteState&);
 
 /// advanceConcrete for a mask known at run time; pick it once per group of elements. Throws std::invalid_argument for an unknown bit.
 ConcreteUpdate concreteUpdate(unsigned effects);

@@ -37,6 +37,10 @@ struct ConcreteParameters {
 	void validate() const;
 };
 
+/// Damage Ω_D from which flow counts as localised [-]: a fifth of the strength is gone. The concrete of Zubelewicz (2018), Table 2, has its peak before, in tension at
+/// 0.06 to 0.19 by its rate (0.2 to 0.3 with a tenth of its fracture energy), in compression at 0.2 to 0.5.
+constexpr double localisedDamage = 0.5;
+
 /// Parameters with everything worked out that the inner loop need not repeat.
 struct PreparedConcrete {
 	/// Checks the parameters (throws std::invalid_argument) and prepares them.
@@ -48,6 +52,7 @@ struct PreparedConcrete {
 	double             perEosPressure;      ///< 1/p_EOS [1/Pa]
 	double             perFrictionPressure; ///< 1/p_q0 [1/Pa]
 	double             perReferenceRate;    ///< 1/ė_0 [s]
+	double             localisedIntegrity;  ///< 1 − η_0 at localisedDamage [-]
 	double             smallestEnergy;      ///< Fracture energy that a drawn one is raised to where it is less [J/m³]
 	Power              eosPower, flowPower, ratePower, frictionPower, damagePower;
 };

@@ -17,7 +17,8 @@ namespace {
 		constexpr std::size_t                   most = 16;
 		std::array<LoadedElement<double>, most> element;
 		std::array<PlaneTensor, 3 * most>       strain;
-		std::array<double, 3 * most>            fractureEnergy;
+		std::array<double, 3 * most>            fractureEnergy, bandEnergy;
+		const FractureEnergies                  energies(fractureEnergy.data(), a.bandEnergy ? bandEnergy.data() : fractureEnergy.data());
 		for (std::size_t first = begin; first < end; first += most) {
 			const std::size_t count = std::min(most, end - first);
 			for (std::size_t j = 0; j < count; j++) {
@@ -26,10 +27,11 @@ namespace {
 				for (std::size_t k = 0; k < 3; k++) {
 					strain[3 * j + k]         = { strains[k].xx, strains[k].yy, 0, strains[k].xy };
 					fractureEnergy[3 * j + k] = a.fractureEnergy[first + j];
+					if (a.bandEnergy) bandEnergy[3 * j + k] = a.bandEnergy[first + j];
 				}
 			}
 			ConcreteState* state = a.state + 3 * (first - g.begin);
-			a.update(*a.concrete, fractureEnergy.data(), strain.data(), a.dt, state, 3 * count);
+			a.update(*a.concrete, energies, strain.data(), a.dt, state, 3 * count);
 			for (std::size_t j = 0; j < count; j++, state += 3) {
 				SubElementTensors<double> stress;
 				for (std::size_t k = 0; k < 3; k++)

@@ -21,6 +21,7 @@ struct ElementArrays {
 	ConcreteBlockUpdate     update;
 	ConcreteState*          state; ///< first state of the group
 	const double*           fractureEnergy;
+	const double*           bandEnergy; ///< null unless a crack band is asked for
 	double                  dt;
 };
 

@@ -43,14 +43,17 @@ namespace {
 	}
 }
 
-MaterialPoint::MaterialPoint(const ConcreteParameters& parameters, unsigned effects, const PlaneTensor& damage)
+MaterialPoint::MaterialPoint(const ConcreteParameters& parameters, unsigned effects, const PlaneTensor& damage, double bandFactor)
         : stressTolerance(1e-10 * parameters.strength)
         , concrete_(parameters)
+        , fractureEnergy_(parameters.fractureEnergy, parameters.fractureEnergy * bandFactor)
         , update_(concreteUpdate(effects))
         , point_ {}
         , freeRate_ {}
 {
 	checkDamage(damage);
+	if (!(std::isfinite(bandFactor) && bandFactor > 0))
+		throw std::invalid_argument("bandFactor = " + std::to_string(bandFactor) + " [-] must be a positive number; 1 leaves the fracture energy as it is.");
 	point_.state.damage = damage;
 }
 
@@ -103,7 +106,7 @@ bool MaterialPoint::step(const PathLeg& leg, const Components& strain, const Com
 	ConcreteState trial;
 	const auto    residualAt = [&](const Components& at) {
                 trial = point_.state;
-                update_(concrete_, concrete_.parameters.fractureEnergy, tensorOf(at), dt, trial);
+                update_(concrete_, fractureEnergy_, tensorOf(at), dt, trial);
                 const Components reached = componentsOf(trial.stress);
                 Vector           residual(count);
                 for (int u = 0; u < count; ++u)

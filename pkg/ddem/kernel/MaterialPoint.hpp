@@ -31,12 +31,13 @@ struct PathPoint {
 /// path within `stressTolerance`; a step that does not converge, or in which a free strain changes by more than 2e-5, is halved.
 class MaterialPoint {
 public:
-	/// `effects` is a mask of ConcreteEffects; `damage` is Ω_0, pre-existing damage (positive semi-definite).
-	/// Throws std::invalid_argument for a bad parameter, effect or damage.
+	/// `effects` is a mask of ConcreteEffects; `damage` is Ω_0, pre-existing damage (positive semi-definite); `bandFactor` multiplies the fracture energy once flow
+	/// has localised, see FractureEnergyOf. Throws std::invalid_argument for a bad parameter, effect, damage or factor.
 	explicit MaterialPoint(
 	        const ConcreteParameters& parameters = ConcreteParameters(),
 	        unsigned                  effects    = ConcreteEffects::All,
-	        const PlaneTensor&        damage     = PlaneTensor { 0, 0, 0, 0 });
+	        const PlaneTensor&        damage     = PlaneTensor { 0, 0, 0, 0 },
+	        double                    bandFactor = 1);
 
 	/// Runs a leg and returns the point after every `every`-th step and at the end. Throws std::invalid_argument for a bad leg and std::runtime_error,
 	/// with the time and the component, where no strain gives the stress asked for (more than the material bears). The point then stays where the
@@ -54,7 +55,8 @@ private:
 
 	bool step(const PathLeg& leg, const Components& strain, const Components& stress, double dt, int halvings);
 
-	PreparedConcrete concrete_;
+	PreparedConcrete         concrete_;
+	FractureEnergyOf<double> fractureEnergy_;
 	ConcreteUpdate   update_;
 	PathPoint        point_;
 	Components       freeRate_; // strain rate of the last step [1/s], the first guess of the next

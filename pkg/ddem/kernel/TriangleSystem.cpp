@@ -131,7 +131,7 @@ void TriangleSystem::build()
 		covered = group[g].end;
 		if (group[g].law == TriangleGroup::Law::Concrete
 		    && (group[g].concrete >= concrete.size() || group[g].firstState + 3 * (group[g].end - group[g].begin) > concreteState.size()
-		        || fractureEnergy.size() < group[g].end))
+		        || fractureEnergy.size() < group[g].end || (!bandEnergy.empty() && bandEnergy.size() < group[g].end)))
 			throw std::logic_error("TriangleSystem: a concrete group needs its material, states and fracture energies");
 		for (std::size_t begin = group[g].begin; begin < group[g].end; begin += trianglesPerChunk)
 			chunk.push_back({ g, begin, std::min(begin + trianglesPerChunk, group[g].end) });
@@ -182,6 +182,7 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 	arrays.coreForce      = core.force.data();
 	arrays.coreMoment     = spin.moment.data();
 	arrays.fractureEnergy = fractureEnergy.data();
+	arrays.bandEnergy     = bandEnergy.empty() ? nullptr : bandEnergy.data();
 	arrays.dt             = settings.dt;
 
 	struct GroupLoop {

@@ -106,6 +106,7 @@ public:
 	std::vector<TriangleGroup>               group;  ///< in order, covering all triangles
 	std::vector<ConcreteGroupLaw>            concrete;
 	std::vector<double>                      fractureEnergy; ///< G_f of every triangle [J/m³]; only read in concrete groups, empty if there are none
+	std::vector<double>                      bandEnergy;     ///< the same once flow has localised; empty unless a crack band is asked for
 	RotationTreatment                        rotation = RotationTreatment::Cosserat;
 
 	// --- state

@@ -105,9 +105,9 @@ namespace {
 		return rows;
 	}
 
-	std::shared_ptr<MaterialPoint> makePoint(const py::dict& parameters, unsigned effects, const py::object& damage)
+	std::shared_ptr<MaterialPoint> makePoint(const py::dict& parameters, unsigned effects, const py::object& damage, double bandFactor)
 	{
-		return std::make_shared<MaterialPoint>(parametersOf(parameters), effects, tensorOf(damage));
+		return std::make_shared<MaterialPoint>(parametersOf(parameters), effects, tensorOf(damage), bandFactor);
 	}
 
 	np::ndarray
@@ -131,7 +131,7 @@ BOOST_PYTHON_MODULE(_materialpoint)
 	py::def("defaults", defaults, "Parameters of concrete, Zubelewicz (2018), Tables 1 and 2, by name.");
 	py::def("validate", validate, "ValueError for a parameter that is not allowed.");
 	py::class_<MaterialPoint, std::shared_ptr<MaterialPoint>, boost::noncopyable>("Point", py::no_init)
-	        .def("__init__", py::make_constructor(makePoint, py::default_call_policies(), (py::arg("parameters"), py::arg("effects"), py::arg("damage"))))
+	        .def("__init__", py::make_constructor(makePoint, py::default_call_policies(), (py::arg("parameters"), py::arg("effects"), py::arg("damage"), py::arg("bandFactor"))))
 	        .def("run",
 	             run,
 	             (py::arg("control"), py::arg("target"), py::arg("duration"), py::arg("steps"), py::arg("every")),

@@ -87,7 +87,7 @@ def refinement(crushed, shown=3e-4):
 			panels[2].semilogx([1e3 * size for size in sizes], energies, marker, markersize=4, label="crack band" if corrected else "per volume")
 		panels[2].set_xticks([1e3 * size for size in sizes], [f"{1e3 * size:g}" for size in sizes])
 		panels[2].minorticks_off()
-		panels[2].set_ylim(0, None)
+		panels[2].set_ylim(0, 1.05 * panels[2].get_ylim()[1])
 		panels[2].set_xlabel("size of the cells [mm]")
 		panels[2].set_ylabel(f"energy until {1e6 * shown:.0f} µs [kJ/m]")
 		panels[2].legend()

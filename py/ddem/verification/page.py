@@ -89,8 +89,9 @@ def _save(picture, path):
 
 
 def _with_indices(text):
-	"""σ_xx, c_R: what follows a single letter and an underscore becomes an index; names like time_step stay."""
-	return Markup(re.sub(r"(?<![A-Za-z])([A-Za-zα-ωΑ-Ω∂])_([A-Za-z0-9α-ω]+)", r"\1<sub>\2</sub>", str(escape(text))))
+	"""σ_xx, ė_N: what follows a single letter and an underscore becomes an index, what follows a hat an exponent; names like time_step stay."""
+	text = re.sub(r"\^(\([^()]*\)|{[^{}]*}|[\d.]*\d|\w+)", lambda found: f"<sup>{found[1].strip('(){}')}</sup>", str(escape(text)))
+	return Markup(re.sub(r"(?<![A-Za-z])([^\W\d_]\u0307?)_([^\W_]+)", r"\1<sub>\2</sub>", text))
 
 
 def _tightest(result):
