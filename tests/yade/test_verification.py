@@ -200,3 +200,14 @@ def test_curves_tell_a_wrong_law(name, change):
 	_, right = concrete_rates.RatePoint(parameters).uniaxial(-1, -0.006)
 	_, wrong = concrete_rates.RatePoint({**parameters, name: parameters[name] * change}).uniaxial(-1, -0.006)
 	assert concrete_rates.largest_difference(wrong[:, 1], right[:, 1]) > 1e-3
+
+
+@pytest.mark.parametrize(
+	"text, html", [
+		("σ_xx and c_R", "σ<sub>xx</sub> and c<sub>R</sub>"), ("N_Ω, ė_N, M_p ė_eq", "N<sub>Ω</sub>, ė<sub>N</sub>, M<sub>p</sub> ė<sub>eq</sub>"),
+		("(ė_N/ė_0)^ω_p)^(1/n_p)", "(ė<sub>N</sub>/ė<sub>0</sub>)<sup>ω<sub>p</sub></sup>)<sup>1/n<sub>p</sub></sup>"), ("x^0.014, e^{ikx}.", "x<sup>0.014</sup>, e<sup>ikx</sup>."),
+		("ddem.time_step and a < b", "ddem.time_step and a &lt; b")
+	]
+)
+def test_indices_and_exponents_on_the_page(text, html):
+	assert str(page._with_indices(text)) == html
