@@ -72,6 +72,9 @@ namespace {
 		return values;
 	}
 
+	/// What a triangle's shape says beside its nodes.
+	std::array<Real, 3> valuesOf(const DeformableTriangle& shape) { return { shape.thickness, shape.fractureEnergy, shape.bandFactor }; }
+
 	/// Starts a point from what is known of it, else from State; returns its blocked degrees of freedom.
 	unsigned startPoint(const Body& b, const CarriedState::Point* known, ddem::Points& to, std::size_t i)
 	{
@@ -145,6 +148,7 @@ DeformableAssembly DeformableAssembly::fromScene(Scene& scene, ddem::RotationTre
 		if (!triples.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
 
 		const auto remembered = std::find_if(made.materials.begin(), made.materials.end(), [&](const Fingerprint& other) { return other.first == b.material; });
+		made.shapeValues.push_back(valuesOf(shape));
 		made.coreMaterial.push_back(std::size_t(remembered - made.materials.begin()));
 		if (remembered == made.materials.end()) made.materials.emplace_back(b.material, fingerprint(material));
 		const auto* concrete = dynamic_cast<const ConcreteDamageMat*>(&material);
@@ -266,7 +270,7 @@ bool DeformableAssembly::materialsChanged() const
 	for (const auto& known : materials)
 		if (fingerprint(static_cast<const DeformableElastMat&>(*known.first)) != known.second) return true;
 	for (std::size_t i = 0; i < cores.size(); i++)
-		if (cores[i]->material != materials[coreMaterial[i]].first || triangleShape(*cores[i]).thickness != system->groupOf(i).thickness) return true;
+		if (cores[i]->material != materials[coreMaterial[i]].first || valuesOf(triangleShape(*cores[i])) != shapeValues[i]) return true;
 	return false;
 }
 

@@ -52,7 +52,7 @@ public:
 
 	/// Whether the scene's deformable bodies are those of this assembly (cheap unless bodies were added).
 	bool upToDate(const Scene& scene);
-	/// Whether a material, or a triangle's choice of one, has been changed since the arrays were built.
+	/// Whether a material, a triangle's choice of one, or its shape's own values have been changed since the arrays were built.
 	bool materialsChanged() const;
 
 	/// Gives the bodies their masses and the group bit, and links shapes to the arrays.
@@ -77,6 +77,7 @@ private:
 	using Fingerprint = std::pair<shared_ptr<Material>, std::vector<double>>;
 	std::vector<Fingerprint> materials;                        ///< parameters as they were when the arrays were built
 	std::vector<std::size_t> coreMaterial;                     ///< place in materials of every triangle's
+	std::vector<std::array<Real, 3>> shapeValues;              ///< thickness, fracture energy and band factor of every triangle's shape
 	std::vector<Body::id_t>  nodeId, coreId;                   ///< as assembled; erasing a body takes its id away
 	std::vector<unsigned>    nodeBlocked, coreBlocked;         ///< State::blockedDOFs as last taken up
 	std::vector<std::size_t> constrainedNodes, constrainedCores;

@@ -2,6 +2,7 @@
 #include <pkg/ddem/DeformableEngine.hpp>
 
 #include <pkg/ddem/DeformableNode.hpp>
+#include <pkg/ddem/DeformableTimeStepper.hpp>
 #include <pkg/ddem/Onlookers.hpp>
 
 #include <boost/python/numpy.hpp>
@@ -19,7 +20,7 @@ CREATE_LOGGER(DeformableEngine);
 namespace {
 
 	constexpr int  stateVersion   = 2;
-	constexpr long boundInterval  = 100; ///< steps between checks of the time step against shape and equation of state
+	constexpr long boundInterval = 50, pressureInterval = 10; ///< steps between checks of the time step against shape, and against pressure, which may rise faster
 
 	/// Engines that neither look at deformable bodies nor add forces to them.
 	bool isQuiet(const Engine& engine)
@@ -89,6 +90,7 @@ CarriedState DeformableEngine::stateToCarry(const Scene& of) const
 		const auto* shape = b ? dynamic_cast<const DeformableTriangle*>(b->shape.get()) : nullptr;
 		if (!shape || !shape->system) continue;
 		const ddem::TriangleSystem& s    = *shape->system;
+		carried.lastTimeStep             = s.lastTimeStep;
 		CarriedState::Core&         core = carried.cores[b->getId()];
 		core.blocked                     = b->state->blockedDOFs;
 		for (std::size_t c = 0; c < 2; c++) {
@@ -116,6 +118,9 @@ void DeformableEngine::assembleIfNeeded(Scene& of)
 	savedVersion = 0;
 	stale        = false;
 	checkedStep  = 0;
+	const auto& laws = assembly.system->concrete;
+	const bool  eos  = std::any_of(laws.begin(), laws.end(), [](const ddem::ConcreteGroupLaw& law) { return law.effects & ddem::ConcreteEffects::EquationOfState; });
+	checkInterval    = eos ? pressureInterval : boundInterval;
 	maskIntegrators(of);
 	for (const auto& b : assembly.cores)
 		if (rotation == "cosserat" && static_cast<const DeformableElastMat&>(*b->material).rotationStiffness < 1e-3) {
@@ -183,6 +188,20 @@ void DeformableEngine::checkEngines()
 		throw std::runtime_error("wrong order in O.engines: ForceResetter comes after DeformableEngine and would wipe forces before they are used; put it first");
 	if (interactions > mine)
 		throw std::runtime_error("wrong order in O.engines: InteractionLoop comes after DeformableEngine, so contact forces would be used one step late; put DeformableEngine after it");
+	stepper          = nullptr;
+	long timeSteppers = 0;
+	for (std::size_t i = 0; i < now.size(); i++) {
+		if (!dynamic_cast<const TimeStepper*>(now[i])) continue;
+		timeSteppers++;
+		if (const auto* found = dynamic_cast<const DeformableTimeStepper*>(now[i])) {
+			stepper = found;
+			if (long(i) > mine)
+				throw std::runtime_error("wrong order in O.engines: DeformableTimeStepper comes after DeformableEngine, which would run with the step before; put it right after ForceResetter");
+		}
+	}
+	if (stepper && timeSteppers > 1)
+		throw std::runtime_error(
+		        "O.engines has more than one engine that sets O.dt, and YADE allows one: where the scene has spheres as well, remove the other and set DeformableTimeStepper.largest to the step that they need");
 	collectForces = false;
 	integrators.clear();
 	for (std::size_t i = 0; i < now.size(); i++) {
@@ -201,11 +220,16 @@ void DeformableEngine::checkEngines()
 
 void DeformableEngine::checkTimeStep()
 {
+	checkedStep                 = scene->dt;
 	const auto [step, triangle] = assembly.timeStep(scene->dt);
 	if (scene->dt <= step) return;
 	std::ostringstream text;
 	text << "O.dt = " << scene->dt << " s is above the critical time step " << step << " s, set by triangle " << placeOf(*assembly.cores[triangle]) << " in step " << scene->iter
-	     << "; the simulation would blow up: set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; where triangles stretch, let DeformableTimeStepper() in O.engines lower it";
+	     << "; the simulation would blow up: set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; ";
+	if (stepper)
+		text << "DeformableTimeStepper looks every " << stepper->timeStepUpdateInterval << " steps: let it look more often";
+	else
+		text << "where triangles stretch or pressure rises, let DeformableTimeStepper() in O.engines lower it";
 	throw std::runtime_error(text.str());
 }
 
@@ -220,10 +244,7 @@ void DeformableEngine::action()
 	for (const auto* newton : integrators)
 		if (newton->mask <= 0 || (newton->mask & groupMask)) maskIntegrators(*scene);
 	assembly.importPrescribed();
-	if (scene->dt != checkedStep || scene->iter % boundInterval == 0) {
-		checkTimeStep();
-		checkedStep = scene->dt;
-	}
+	if (scene->dt != checkedStep || scene->iter % checkInterval == 0) checkTimeStep();
 	const bool forces = collectForces || scene->forces.getPermForceUsed();
 	assembly.importForces(scene->forces, forces);
 
@@ -254,7 +275,7 @@ void DeformableEngine::stopAtNotFinite()
 	std::ostringstream text;
 	text << "DeformableEngine: the state became infinite or not a number in step " << scene->iter << ", t = " << scene->time << " s";
 	if (place.found) text << ", first at " << (place.isNode ? "node " : "triangle ") << placeOf(place.isNode ? *assembly.nodes[place.index] : *assembly.cores[place.index]);
-	text << "; check forces on it, prescribed velocities and O.dt = " << scene->dt << " s";
+	text << "; check forces on it, prescribed velocities and O.dt = " << scene->dt << " s (DeformableTimeStepper(timeStepUpdateInterval=1) follows fast changes of the critical one)";
 	throw std::runtime_error(text.str());
 }
 

@@ -8,6 +8,8 @@
 
 namespace yade {
 
+class DeformableTimeStepper;
+
 class DeformableEngine : public GlobalEngine {
 public:
 	virtual ~DeformableEngine() = default;
@@ -23,6 +25,8 @@ public:
 	Real                  criticalTimeStep();
 	/// Bound on the time step [s] while a step is under way; any number that is at least `enough` if it surely is.
 	Real                  stableStep(Scene& of, Real enough);
+	/// Whether the time step has yet to be compared with the bound of the present triangles: they or O.dt have changed.
+	bool                  timeStepUnchecked(Scene& of) { return stale || !assembly.upToDate(of) || of.dt != checkedStep; }
 	Real                  timeStepOfScene() const;
 	boost::python::tuple  rulingTriangle();
 	boost::python::object array(const std::string& name);
@@ -50,7 +54,7 @@ public:
 		((int,savedVersion,0,Attr::hidden,"Version of the saved state"))
 		((bool,exposed,true,Attr::hidden,"Whether State agreed with the arrays when saved")),
 		/*ctor*/,
-		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on the time step [s]: 2/ω of the stiffest element, in its present shape (cores of stretched elements need smaller steps) and at the present pressure of the equation of state, with undamaged moduli. Works before the first step; :yref:`DeformableTimeStepper` keeps O.dt below it. Limit: stress itself shifts it by about σ/(2E), which is left out.")
+		.def("criticalTimeStep",&DeformableEngine::criticalTimeStep,"Rigorous bound on a constant time step [s]: 2/ω of the stiffest element, in its present shape (cores of stretched elements need smaller steps) and at the present pressure of the equation of state, with undamaged moduli. Works before the first step; :yref:`DeformableTimeStepper` keeps O.dt below it. Limits: the stiffness that stress itself adds is left out (about σ/(μβ_φ) with a vertexShare from 0.2, nothing below); with the equation of state much shear under little pressure can raise frequencies by several per cent; a step that changes in every step is unstable well below the bound.")
 		.def("timeStepOfScene",&DeformableEngine::timeStepOfScene,"The same bound [s] for the triangles of the scene, from this engine's settings, when the engine is not (yet) in O.engines.")
 		.def("rulingTriangle",&DeformableEngine::rulingTriangle,"The triangle that rules the time step, as (body id, its own bound [s]).")
 		.def("array",&DeformableEngine::array,(boost::python::arg("name")),"Numpy view, without a copy, of a state array of the whole sample; rows in the order of :yref:`DeformableEngine.values` 'nodeIds' and 'triangleIds'.\n\n"
@@ -67,9 +71,11 @@ private:
 	DeformableAssembly                    assembly;
 	std::vector<const Engine*>            checkedEngines;
 	std::vector<const NewtonIntegrator*>  integrators;
+	const DeformableTimeStepper*          stepper       = nullptr; ///< the one in O.engines, if any
 	bool                                  collectForces = false;
 	bool                                  stale         = true; ///< settings changed since the arrays were assembled
-	Real                                  checkedStep   = 0;    ///< time step that was last found stable [s]
+	Real                                  checkedStep   = 0;    ///< time step that was last compared with the bound [s]
+	long                                  checkInterval = 1;    ///< steps between comparisons
 	std::chrono::steady_clock::time_point lastExposure {};
 	int                                   ids[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
 

@@ -10,6 +10,7 @@ CREATE_LOGGER(DeformableTimeStepper);
 
 namespace {
 
+	// A leapfrog whose step alternates is unstable well below the bound on a constant step (parametric resonance), so the step changes seldom.
 	constexpr Real worthRaising = 1.05; ///< a step that could grow by less stays as it is
 	constexpr Real slack        = 0.1;  ///< part of the rest up to the critical step that is used up before the step is lowered: small strains change nothing
 
@@ -19,6 +20,15 @@ void DeformableTimeStepper::postLoad(DeformableTimeStepper&)
 {
 	if (!(safety > 0 && safety <= 1)) throw std::invalid_argument("DeformableTimeStepper.safety = " + std::to_string(safety) + " must lie above 0 and not above 1; 0.8 is a good choice");
 	if (!(largest >= 0)) throw std::invalid_argument("DeformableTimeStepper.largest = " + std::to_string(largest) + " s must not be negative; 0 takes O.dt when the stepper first acts");
+}
+
+bool DeformableTimeStepper::isActivated()
+{
+	if (!active) return false;
+	for (const auto& e : scene->engines)
+		if (auto* engine = dynamic_cast<DeformableEngine*>(e.get()))
+			if (engine->timeStepUnchecked(*scene)) return true; // triangles have come, or somebody has set O.dt
+	return TimeStepper::isActivated();
 }
 
 void DeformableTimeStepper::computeTimeStep(Scene* now)

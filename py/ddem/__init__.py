@@ -8,7 +8,7 @@ Append a mesh of deformable triangles and load it::
 	O.materials.append(ConcreteDamageMat(label="concrete"))
 	block = ddem.append(ddem.mesh.rectangle(width=0.10, height=0.20, size=0.01), "concrete", seed=1)
 	platens = ddem.platens(block, velocity=10, ramp=20e-6)
-	O.engines = [ForceResetter()] + platens.engines + [DeformableEngine(label="deformable")]
+	O.engines = [ForceResetter(), DeformableTimeStepper()] + platens.engines + [DeformableEngine(label="deformable")]
 	O.dt = ddem.time_step(0.8)
 	ddem.run(until=2e-4)
 	print(platens.stress, block.damage.mean())

@@ -164,4 +164,16 @@ TEST(ConcreteCrack, bandKeepsTheStressContinuous) // a sheared crack that closes
 	EXPECT_LT(largestJump(5e6), 0.1 * largestJump(0));
 }
 
+TEST(LocalisedDamage, isReachedAtTheSameDamageWithAnyResidualAndExponent)
+{
+	for (const double residual : { 1e-6, 0.2, 0.9 })
+		for (const double exponent : { 1., 2., 3.5 }) {
+			ConcreteParameters p;
+			p.residual       = residual;
+			p.damageExponent = exponent;
+			const PreparedConcrete other(p);
+			EXPECT_NEAR(other.localisedIntegrity, measureDamage(other, PlaneTensor { 0.4, 0.3, 0, 0 }).integrity, 1e-15); // Ω_D = 0.5
+		}
+}
+
 } // namespace

@@ -5,7 +5,12 @@ import pytest
 
 from yade import ConcreteDamageMat, O, ddem
 
-from deformable_samples import bodies, elastic
+from deformable_samples import bodies, elastic, start
+
+
+def broken():
+	O.materials.append(ConcreteDamageMat(label="brittle", fractureEnergy=8e3))
+	return "brittle"
 
 
 def energies(block):
@@ -42,6 +47,25 @@ def test_it_leaves_what_the_seed_draws_and_is_off_unless_asked_for(mesh):
 	assert (factors(plain) == 1).all() and (factors(drawn) == 1).all()
 	assert (energies(both)[concrete] == energies(drawn)[concrete]).all()
 	assert factors(both)[concrete] == pytest.approx(0.01 / np.sqrt(2 * plain.mesh.areas[concrete]))
+
+
+def test_a_factor_that_is_changed_during_a_run_takes_effect_and_a_wrong_one_is_refused():
+	damages = []
+	for change in (None, 0.05):
+		O.reset()
+		block = ddem.append(ddem.mesh.rectangle(0.02, 0.02, 0.01), broken())
+		block.drive(block.boundary("top"), (None, 5))
+		block.hold(block.boundary("bottom"), "y")
+		start()
+		O.run(200, True)
+		for body in bodies(block.triangle_ids) if change else ():
+			body.shape.bandFactor = change
+		O.run(300, True)
+		damages.append(block.damage.mean())
+	assert damages[1] > 1.05 * damages[0]
+	bodies(block.triangle_ids)[1].shape.bandFactor = -3
+	with pytest.raises(ValueError, match="bandFactor = -3.*must be positive"):
+		O.step()
 
 
 @pytest.mark.parametrize("width", [0, -0.01, float("nan"), float("inf"), "1 cm"])

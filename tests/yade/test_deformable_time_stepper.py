@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from deformable_samples import agitate, elastic, place, set_velocity, start, steps
-from yade import ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
+from yade import ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceResetter, GlobalStiffnessTimeStepper, O, ddem
 
 
-def crushed(stepper, rotation="cosserat"):
+def crushed(stepper, rotation="cosserat", velocity=10):
 	"""A small block of concrete under a platen of 10 m/s; its triangles stretch to several times their size as damage lets them go."""
 	O.reset()
 	O.materials.append(ConcreteDamageMat(label="concrete"))
 	block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, 0.01, pattern="crossed"), "concrete", seed=1)
-	platens = ddem.platens(block, 10)
+	platens = ddem.platens(block, velocity)
 	engine = DeformableEngine(rotation=rotation)
 	O.engines = [ForceResetter(), *platens.engines, *([stepper] if stepper else []), engine]
 	O.dt = 0.8 * engine.criticalTimeStep()
@@ -25,10 +25,25 @@ def test_a_block_can_be_crushed_until_its_triangles_have_stretched_to_a_multiple
 	energy, first = ddem.EnergyBalance(), O.dt
 	while O.time < 1.5e-3:
 		O.run(500, True)
-		assert O.dt < 0.85 * engine.criticalTimeStep()  # lowered from 0.82 on, and it looks every 100 steps
+		assert O.dt < 0.85 * engine.criticalTimeStep()  # lowered from 0.82 on, and it looks every 10 steps
 	assert O.dt < 0.9 * first
 	assert stepper.largest == first
 	assert abs(energy.drift) < 1e-4 * -energy.parts()["externalWork"]
+
+
+def test_no_step_of_an_impact_is_above_the_bound():
+	_, engine = crushed(DeformableTimeStepper())  # the equation of state stiffens within some steps
+	largest = 0
+	for _ in range(300):
+		O.step()
+		largest = max(largest, O.dt / engine.criticalTimeStep())
+	assert 0.75 < largest < 1
+
+
+def test_a_faster_impact_needs_a_look_in_every_step():
+	block, _ = crushed(DeformableTimeStepper(timeStepUpdateInterval=1), velocity=50)
+	steps(1000)
+	assert np.abs(block.positions).max() < 0.1
 
 
 def test_without_it_the_run_stops_with_a_way_out():
@@ -72,6 +87,38 @@ def test_the_step_rises_again_up_to_the_largest():
 	set_velocity(block, lambda x, y: (0, 0))
 	O.step()
 	assert O.dt == first
+
+
+def test_triangles_that_come_later_lower_the_step_at_once():
+	O.reset()
+	elastic()
+	ddem.append(ddem.mesh.rectangle(0.02, 0.02, 0.01), "elastic")
+	engine = start(DeformableTimeStepper(timeStepUpdateInterval=1000))
+	steps(15)
+	first = O.dt
+	ddem.append(ddem.mesh.rectangle(0.01, 0.01, 0.005), "elastic", position=(1, 0, 0))
+	O.step()
+	assert O.dt == pytest.approx(0.5 * first) and O.dt <= 0.8 * engine.criticalTimeStep() * (1 + 1e-12)
+
+
+def test_it_must_come_before_the_engine_and_alone():
+	O.reset()
+	ddem.append(ddem.mesh.rectangle(0.02, 0.02, 0.01), elastic())
+	start()
+	O.engines = O.engines + [DeformableTimeStepper()]
+	with pytest.raises(RuntimeError, match="DeformableTimeStepper comes after DeformableEngine"):
+		O.step()
+	O.reset()
+	ddem.append(ddem.mesh.rectangle(0.02, 0.02, 0.01), elastic())
+	start(GlobalStiffnessTimeStepper(), DeformableTimeStepper())
+	with pytest.raises(RuntimeError, match="more than one engine that sets O.dt.*largest"):
+		O.step()
+
+
+def test_one_that_looks_too_seldom_is_told_so():
+	crushed(DeformableTimeStepper(timeStepUpdateInterval=10000))
+	with pytest.raises(RuntimeError, match="looks every 10000 steps: let it look more often"):
+		steps(300)
 
 
 def test_errors_name_value_and_way_out():

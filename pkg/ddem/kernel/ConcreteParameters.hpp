@@ -37,7 +37,7 @@ struct ConcreteParameters {
 	void validate() const;
 };
 
-/// Damage Ω_D from which flow counts as localised [-]: a fifth of the strength is gone. The concrete of Zubelewicz (2018), Table 2, has its peak before, in tension at
+/// Damage Ω_D from which flow counts as localised [-]: with n_f = 2 a fifth of the strength is gone. The concrete of Zubelewicz (2018), Table 2, has its peak before, in tension at
 /// 0.06 to 0.19 by its rate (0.2 to 0.3 with a tenth of its fracture energy), in compression at 0.2 to 0.5.
 constexpr double localisedDamage = 0.5;
 

@@ -45,8 +45,8 @@ template <class Number> inline Number modulusStiffening(const PreparedConcrete& 
 }
 
 /// Tangent bulk modulus over the reference one, ≥ 1, at a stiffening s: (1+s)²/(1+s−n s), above the secant factor 1+s.
-/// It bounds the tangent of undamaged material: the deviatoric stress that a change of pressure brings is a triangular coupling, so it leaves the
-/// eigenvalues alone.
+/// It bounds the tangent of pure changes of pressure. A change of pressure changes deviatoric stress as well, so that the tangent is not symmetric; under shear of the
+/// size of the pressure frequencies can be 7 % higher, with little pressure and much shear more. Flow keeps concrete from most such states.
 inline double tangentFactor(const PreparedConcrete& concrete, double stiffening)
 {
 	const double factor = 1 + stiffening;

@@ -34,7 +34,8 @@ ElementVector elementMass(const LumpedMass& mass);
 
 /** Largest circular frequency of the free element [rad/s].
  * A node's mass is the sum of the shares of its triangles, so no mesh of such triangles has a higher one (Irons and Treharne 1971): 2/ω is a rigorous bound on
- * the time step of leapfrog, without an eigenproblem of the whole mesh, about a state without stress; stress σ shifts it by about σ/(2E).
+ * a constant time step of leapfrog, without an eigenproblem of the whole mesh, about a state without stress. Stress σ adds a geometric stiffness: nothing with the
+ * default masses, about σ/(μ β_φ) of the frequency where the core's rotation is the fastest motion (vertex shares from about 0.2).
  * \param du relative displacements of the shape it has now [m]
  */
 double highestFrequency(
