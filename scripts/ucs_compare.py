@@ -1,7 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """Crush the same block of concrete twice: once made of rigid bonded spheres, once of deformable triangles.
 
-Run:      scripts/ddem run scripts/ucs_compare.py                     (about a minute; --preset full: about ten)
+Run:      scripts/ddem run scripts/ucs_compare.py                     (half a minute; --preset full: five minutes)
           scripts/ddem run scripts/ucs_compare.py --help              (all options)
 Writes:   a table here, and out/ucs_compare/report.html with pictures, summary.json, a CSV of each test, and ParaView files.
 
@@ -141,7 +141,7 @@ def read_options():
 		"spheres on one thread (the launcher's default; scripts/ddem run --threads N for more)."
 	)
 	run = parser.add_argument_group("run")
-	run.add_argument("--preset", choices=PRESETS, default="quick", help="sizes and speed: quick takes about a minute on two cores, full about ten")
+	run.add_argument("--preset", choices=PRESETS, default="quick", help="sizes and speed: quick takes about half a minute, full about five")
 	run.add_argument("--models", type=models, default="rigid,deformable", metavar="LIST", help="which models to crush, in this order: rigid, deformable or both")
 	run.add_argument("--seed", type=seed, default=1, help="draws the packing, the irregular mesh and the fracture energies")
 	run.add_argument("--out", default=os.path.join("out", "ucs_compare"), metavar="DIR", help="folder for all files, made when missing; older files are replaced")

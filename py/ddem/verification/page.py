@@ -72,7 +72,7 @@ def errors(results):
 			ax.plot([], [], "o", color=plots.COLOURS[1], markersize=2.8, label="error above the tolerance")
 		ax.set_xscale("log")
 		ax.set_xlim(0.4 * _FLOOR, 3)
-		ax.set_yticks(range(len(results)), [result.case.title for result in results])
+		ax.set_yticks(range(len(results)), [result.case.title.replace("β_φ", r"$\beta_\varphi$").replace("→", r"$\to$") for result in results])
 		ax.set_ylim(len(results) - 0.3, -0.7)
 		ax.tick_params(axis="y", length=0)
 		ax.spines[["top", "right", "left"]].set_visible(False)
