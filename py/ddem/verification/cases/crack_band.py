@@ -100,6 +100,10 @@ def crack_band(check):
 			f"{name} with the correction, unstructured: largest over smallest, less one [-]", spread(values["with", "unstructured"]), 0, tolerance,
 			f"crack band: the same {name}{' per area' if name == 'energy' else ''}", scale=1
 		)
+	check(
+		"strength with the correction, alternating: largest over smallest, less one [-]", spread(strengths["with", "alternating"]), 0, 0.25,
+		"crack band: the same strength", scale=1
+	)
 	means = [energies["with", pattern].mean() for pattern in SIZES]
 	check("energy with the correction: unstructured over alternating [-]", means[1] / means[0], 1, 0.1, "√(2S): Rots (1988)")
 	first, last = SIZES["alternating"][0], SIZES["alternating"][-1]
