@@ -220,9 +220,12 @@ void DeformableEngine::checkEngines()
 
 void DeformableEngine::checkTimeStep()
 {
-	checkedStep                 = scene->dt;
 	const auto [step, triangle] = assembly.timeStep(scene->dt);
-	if (scene->dt <= step) return;
+	if (scene->dt <= step) {
+		checkedStep = scene->dt;
+		return;
+	}
+	checkedStep = 0; // a second try is checked, too
 	std::ostringstream text;
 	text << "O.dt = " << scene->dt << " s is above the critical time step " << step << " s, set by triangle " << placeOf(*assembly.cores[triangle]) << " in step " << scene->iter
 	     << "; the simulation would blow up: set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; ";

@@ -23,7 +23,7 @@ public:
 	/// What Python reads goes through here: the arrays, with what was changed in State taken up.
 	DeformableAssembly& current();
 	Real                  criticalTimeStep();
-	/// Bound on the time step [s] while a step is under way; any number that is at least `enough` if it surely is.
+	/// Bound on the time step [s] while a step is under way; a result of at least `enough` says no more.
 	Real                  stableStep(Scene& of, Real enough);
 	/// Whether the time step has yet to be compared with the bound of the present triangles: they or O.dt have changed.
 	bool                  timeStepUnchecked(Scene& of) { return stale || !assembly.upToDate(of) || of.dt != checkedStep; }
@@ -74,7 +74,7 @@ private:
 	const DeformableTimeStepper*          stepper       = nullptr; ///< the one in O.engines, if any
 	bool                                  collectForces = false;
 	bool                                  stale         = true; ///< settings changed since the arrays were assembled
-	Real                                  checkedStep   = 0;    ///< time step that was last compared with the bound [s]
+	Real                                  checkedStep   = 0;    ///< time step that was last found stable [s]
 	long                                  checkInterval = 1;    ///< steps between comparisons
 	std::chrono::steady_clock::time_point lastExposure {};
 	int                                   ids[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };

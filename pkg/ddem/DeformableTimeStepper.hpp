@@ -1,5 +1,5 @@
 // GPL v2 or later, see LICENSE.
-// The engine that keeps O.dt below the critical time step of the deformable triangles.
+// The engine that lets O.dt follow the critical time step of the deformable triangles.
 #pragma once
 
 #include <pkg/ddem/YadeInclude.hpp>

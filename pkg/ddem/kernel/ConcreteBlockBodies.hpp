@@ -78,7 +78,8 @@ inline void advanceBatch(const PreparedConcrete& concrete, const FractureEnergie
 	} else
 		s.plasticDissipation = s.damageDissipation = s.stiffeningEnergy = zero;
 
-	const FractureEnergyOf<Batch> energy(Batch::load_unaligned(fractureEnergy.spread), Batch::load_unaligned(fractureEnergy.band));
+	FractureEnergyOf<Batch> energy(zero);
+	if constexpr (flows && damages) energy = { Batch::load_unaligned(fractureEnergy.spread), Batch::load_unaligned(fractureEnergy.band) };
 	advanceConcrete<effects>(concrete, energy, loadTensors<Batch>(&newStrain->xx, 4), dt, s);
 
 	storeTensors(s.stress, &state->stress.xx, stride);

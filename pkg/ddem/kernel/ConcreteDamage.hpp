@@ -17,7 +17,8 @@ template <class Number> struct DamageMeasure {
 };
 
 /// G_f of a sub-element [J/m³]: while flow is spread over the material, and once it has localised in a band of one row of elements. They differ where a crack band
-/// is asked for: then the energy of a crack per area does not depend on the size of the elements (Bažant and Oh 1983), nor does the strength, which the first rules.
+/// is asked for: then the energy of a crack per area does not depend on the size of the elements (Bažant and Oh 1983), nor does the strength
+/// of what has its peak before, which the first rules.
 template <class Number> struct FractureEnergyOf {
 	Number spread, band;
 

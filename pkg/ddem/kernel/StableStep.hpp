@@ -19,8 +19,8 @@ using ElementMatrix = Eigen::Matrix<double, 9, 9>;
 using ElementVector = Eigen::Matrix<double, 9, 1>;
 
 /** Tangent stiffness in the element's frame [N/m, N, N·m]; unknowns: displacement of vertex 1, 2, 3, of the core, rotation of the core (zero row where cores do not rotate).
- * \param du relative displacements Δu_e of the shape it has now [m]: the arms r_e + Δu_e by which a rotation moves the vertices grow with the element. Stress enters by
- * the material alone; the geometric part, of the order of stress over modulus, is left out.
+ * \param du relative displacements Δu_e of the shape it has now [m]: the arms r_e + Δu_e by which a rotation moves the vertices grow with the element. The stiffness
+ * that stress adds (the geometric part, of the order of stress over modulus) is left out.
  */
 ElementMatrix elementStiffness(
         const TriangleReference<double>&     reference,

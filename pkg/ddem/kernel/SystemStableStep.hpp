@@ -21,7 +21,7 @@ struct SystemStableStep {
  * bound are asked for it.
  * \param restFrequency highest frequency of every triangle at rest [rad/s]
  * \param vertexShare share of the mass that sits in the vertices [-]
- * \param enough a step that is surely below this is looked at no further [s]: then the result is any number that is at least this
+ * \param enough triangles whose step is surely at least this are not looked at more closely [s]; a result of at least this says no more
  */
 SystemStableStep stableStep(
         const TriangleSystem& system, const std::vector<double>& restFrequency, double vertexShare, double enough = std::numeric_limits<double>::infinity());
