@@ -4,7 +4,7 @@
 #include <pkg/bonded/ViscousBodyDamping.hpp>
 
 #include <pkg/ddem/Onlookers.hpp>
-#include <pkg/ddem/kernel/EigenSpace.hpp>
+#include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 #include <algorithm>
 #include <exception>

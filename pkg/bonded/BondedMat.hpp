@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pkg/ddem/YadeInclude.hpp>
-#include <pkg/ddem/kernel/BondContact.hpp>
-#include <pkg/ddem/kernel/BondStrength.hpp>
+#include <pkg/bonded/kernel/BondContact.hpp>
+#include <pkg/bonded/kernel/BondStrength.hpp>
 
 namespace yade {
 

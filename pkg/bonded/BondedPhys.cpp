@@ -2,7 +2,7 @@
 // One bond, or the frictional contact that is left of it.
 #include <pkg/bonded/BondedPhys.hpp>
 
-#include <pkg/ddem/kernel/EigenSpace.hpp>
+#include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 namespace yade {
 

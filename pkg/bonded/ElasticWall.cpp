@@ -1,8 +1,8 @@
 // GPL v2 or later, see LICENSE.
 // Walls that repel or hold bonded particles elastically: material, physics and the functors between them.
 #include <pkg/bonded/ElasticWall.hpp>
-#include <pkg/ddem/kernel/BondWall.hpp>
-#include <pkg/ddem/kernel/EigenSpace.hpp>
+#include <pkg/bonded/kernel/BondWall.hpp>
+#include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 #include <sstream>
 

@@ -3,10 +3,10 @@
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/ElasticWall.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
-#include <pkg/ddem/kernel/BondStableStep.hpp>
-#include <pkg/ddem/kernel/BondWall.hpp>
-#include <pkg/ddem/kernel/EigenSpace.hpp>
-#include <pkg/ddem/kernel/EsysContact.hpp>
+#include <pkg/bonded/kernel/BondStableStep.hpp>
+#include <pkg/bonded/kernel/BondWall.hpp>
+#include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
+#include <pkg/bonded/kernel/EsysContact.hpp>
 
 #include <set>
 

@@ -5,7 +5,7 @@
 #include <pkg/bonded/BondedEnergy.hpp>
 #include <pkg/bonded/BondedPhys.hpp>
 #include <pkg/bonded/BrokenBond.hpp>
-#include <pkg/ddem/kernel/BondSystem.hpp>
+#include <pkg/bonded/kernel/BondSystem.hpp>
 
 #include <mutex>
 

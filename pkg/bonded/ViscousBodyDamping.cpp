@@ -1,7 +1,7 @@
 // GPL v2 or later, see LICENSE.
 // Viscous damping of translation and rotation of every particle.
 #include <pkg/bonded/ViscousBodyDamping.hpp>
-#include <pkg/ddem/kernel/BondDamping.hpp>
+#include <pkg/bonded/kernel/BondDamping.hpp>
 
 namespace yade {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pkg/ddem/DeformableElastMat.hpp>
-#include <pkg/ddem/kernel/ConcreteLaw.hpp>
+#include <pkg/ddem/kernel/laws/ConcreteLaw.hpp>
 
 namespace yade {
 

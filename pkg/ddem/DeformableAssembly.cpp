@@ -2,7 +2,7 @@
 #include <pkg/ddem/DeformableAssembly.hpp>
 
 #include <pkg/ddem/DeformableNode.hpp>
-#include <pkg/ddem/kernel/StableStep.hpp>
+#include <pkg/ddem/kernel/triangles/StableStep.hpp>
 
 #include <algorithm>
 #include <map>

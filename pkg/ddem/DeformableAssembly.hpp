@@ -4,7 +4,7 @@
 
 #include <pkg/ddem/ConcreteDamageMat.hpp>
 #include <pkg/ddem/DeformableTriangle.hpp>
-#include <pkg/ddem/kernel/SystemStableStep.hpp>
+#include <pkg/ddem/kernel/triangles/SystemStableStep.hpp>
 
 #include <array>
 #include <map>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pkg/ddem/YadeInclude.hpp>
-#include <pkg/ddem/kernel/TriangleSystem.hpp>
+#include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
 
 
 namespace yade {

@@ -2,7 +2,7 @@
 // What the tests of the concrete law share: random tensors, rotated axes, full 3×3 matrices.
 #pragma once
 
-#include <pkg/ddem/kernel/ConcreteLaw.hpp>
+#include <pkg/ddem/kernel/laws/ConcreteLaw.hpp>
 
 #include <Eigen/Dense>
 

@@ -2,9 +2,9 @@
 // Triangles, meshes and systems that the tests of the deformable triangles share.
 #pragma once
 
-#include <pkg/ddem/kernel/ElementFrame.hpp>
-#include <pkg/ddem/kernel/StableStep.hpp>
-#include <pkg/ddem/kernel/TriangleSystem.hpp>
+#include <pkg/ddem/kernel/triangles/ElementFrame.hpp>
+#include <pkg/ddem/kernel/triangles/StableStep.hpp>
+#include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
 
 #include <algorithm>
 #include <array>

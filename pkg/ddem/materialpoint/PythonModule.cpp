@@ -4,7 +4,7 @@
 #include <boost/python.hpp>
 #include <boost/python/numpy.hpp>
 
-#include <pkg/ddem/kernel/MaterialPoint.hpp>
+#include <pkg/ddem/kernel/laws/MaterialPoint.hpp>
 
 #include <memory>
 #include <stdexcept>

@@ -1,0 +1,26 @@
+// GPL v2 or later, see LICENSE.
+// Loops over bonds, compiled for several instruction sets.
+#pragma once
+
+#include <pkg/bonded/kernel/BondSystem.hpp>
+
+namespace yade::ddem {
+
+/// What a bond loop reads and writes, as plain pointers.
+struct BondArrays {
+	const std::int32_t* first;
+	const std::int32_t* second;
+	const double*       pose;
+	const double*       constant[BondSystem::ConstantCount];
+	double*             rows;
+};
+
+/// Computes bonds begin … end - 1 and, rounded up to whole SIMD batches, some after them. \returns whether any of them is beyond its strength
+using BondLoop = bool (*)(const BondArrays&, std::size_t begin, std::size_t end);
+
+/// The loop for the widest SIMD unit of the processor it runs on.
+BondLoop selectBondLoop(BondConvention convention);
+/// Loops compiled for processors with AVX2 and FMA; null elsewhere.
+BondLoop selectBondLoopAvx2(BondConvention convention);
+
+} // namespace yade::ddem
