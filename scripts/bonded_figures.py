@@ -24,10 +24,11 @@ import shutil
 import signal
 import sys
 
-from yade.ddem import bonded_study_page, commandline
-from yade.ddem.bonded_study import Group, Record
-from yade.ddem.campaign import Campaign, Case, Failed
-from yade.ddem.commandline import count, require_writable, share
+from yade.ddem.reports import bonded_study
+from yade.ddem.studies import commandline
+from yade.ddem.studies.bonded_study import Group, Record
+from yade.ddem.studies.campaign import Campaign, Case, Failed
+from yade.ddem.studies.commandline import count, require_writable, share
 
 SCRIPTS = os.path.dirname(os.path.abspath(sys.argv[0]))
 SAMPLES = os.path.join(os.path.dirname(SCRIPTS), "tests", "data", "esys")  # of ESyS-Particle, in a box of 10 x 20 x 10 mm
@@ -58,10 +59,10 @@ def main():
 	for group, members in groups:
 		group.records = [Record(folders[case]) for case in members]
 	groups = [group for group, _ in groups]
-	page = bonded_study_page.write(
+	page = bonded_study.write(
 		groups, options.out, commandline.command(), commandline.plain(options), versions(), settings(options, groups), pictures=options.pictures, pdf=options.pdf
 	)
-	print(f"\n{bonded_study_page.table(groups)}\n\nReport: {page}")
+	print(f"\n{bonded_study.table(groups)}\n\nReport: {page}")
 
 
 def interrupt(*_):

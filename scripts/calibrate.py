@@ -28,12 +28,12 @@ import signal
 import sys
 from argparse import SUPPRESS
 
-from yade.ddem import commandline, virtualtest
-from yade.ddem.calibration import Calibration, Target
-from yade.ddem.calibration_quantities import MEASURES, TUNABLES, parameters, starts, usual
-from yade.ddem.calibration_report import CalibrationReport, Progress, material_line
-from yade.ddem.commandline import count, not_negative, positive, require_writable, seed, share
-from yade.ddem.evaluations import Bench
+from yade.ddem.reports.calibration import CalibrationReport, Progress, material_line
+from yade.ddem.studies import commandline, virtualtest
+from yade.ddem.studies.calibration import Calibration, Target
+from yade.ddem.studies.calibration_quantities import MEASURES, TUNABLES, parameters, starts, usual
+from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed, share
+from yade.ddem.studies.evaluations import Bench
 
 #: attributes of the material that are stated, with the values of its class where nothing else is said
 STATED = {

@@ -30,9 +30,10 @@ import time
 from tqdm import tqdm
 
 from yade import ddem
-from yade.ddem import commandline, plots
-from yade.ddem.commandline import count, not_negative, positive, require_writable, seed
-from yade.ddem.esys import comparison
+from yade.ddem import plots
+from yade.ddem.studies import commandline
+from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed
+from yade.ddem.studies.esys import comparison
 
 SIZE = (0.010, 0.020, 0.010)  # of a prism made here [m]
 BUSY = 0.5  # load of the machine from which it is said that the times are not to be trusted

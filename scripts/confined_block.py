@@ -23,8 +23,9 @@ import math
 import os
 
 from yade import O
-from yade.ddem import commandline, plots, vtk
-from yade.ddem.structures import confined, confined_figures
+from yade.ddem import plots, vtk
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import confined, confined_figures
 
 
 def main():

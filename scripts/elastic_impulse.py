@@ -24,9 +24,10 @@ import time
 
 import numpy as np
 
-from yade.ddem import commandline, plots, vtk
+from yade.ddem import plots, vtk
 from yade.ddem.series import Series
-from yade.ddem.structures import impulse, impulse_figures
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import impulse, impulse_figures
 
 
 def main():
@@ -48,7 +49,7 @@ def main():
 
 
 def find_reference(history):
-	from yade.ddem.structures import impulse_reference
+	from yade.ddem.verification import impulse_reference
 	try:
 		return impulse_reference.quadratic(history)
 	except (RuntimeError, ValueError) as error:

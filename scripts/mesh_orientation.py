@@ -24,8 +24,9 @@ import math
 import os
 
 from yade import O
-from yade.ddem import commandline, plots, vtk
-from yade.ddem.structures import confined, confined_figures
+from yade.ddem import plots, vtk
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import confined, confined_figures
 
 # size [m] that gives so many triangles on the area of the block: four, two and 2.38 triangles for each square of that side
 SIZES = {"crossed": 4.0, "alternating": 2.0, "unstructured": 2.38}

@@ -24,8 +24,9 @@ import math
 import os
 
 from yade import O
-from yade.ddem import commandline, plots, vtk
-from yade.ddem.structures import beam, beam_figures
+from yade.ddem import plots, vtk
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import beam, beam_figures
 
 
 def main():

@@ -34,8 +34,9 @@ import textwrap
 import numpy as np
 
 from yade import O
-from yade.ddem import commandline, plots, vtk
-from yade.ddem.structures import reinforced, reinforced_figures, reinforced_statements
+from yade.ddem import plots, vtk
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import reinforced, reinforced_figures, reinforced_statements
 
 def main():
 	options = read_options()

@@ -20,9 +20,10 @@ import os
 import numpy as np
 
 from yade import O
-from yade.ddem import commandline, plots, vtk
+from yade.ddem import plots, vtk
 from yade.ddem.series import Series
-from yade.ddem.structures import spall, spall_figures
+from yade.ddem.studies import commandline
+from yade.ddem.studies.structures import spall, spall_figures
 
 
 def main():

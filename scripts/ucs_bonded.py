@@ -28,9 +28,11 @@ import time
 from argparse import SUPPRESS
 
 from yade import ddem
-from yade.ddem import commandline, parameter_tables, ucs, vtk
-from yade.ddem.commandline import count, not_negative, number, positive, require_writable, seed, share
-from yade.ddem.report import Report
+from yade.ddem import vtk
+from yade.ddem.reports import parameter_tables
+from yade.ddem.reports.uniaxial import Report
+from yade.ddem.studies import commandline, uniaxial
+from yade.ddem.studies.commandline import count, not_negative, number, positive, require_writable, seed, share
 
 MASS = {"consistent": ("solid", 2600.0), "esys": ("cube", 1e6)}  # law and density [kg/m³] of each convention, unless told otherwise
 # Speed of each wall [m/s]: the stress of the first wave, ρcv, has to stay well below the strength, which is small in tension.
@@ -50,7 +52,7 @@ def main():
 	recorders = [vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", "rigid"))] if options.vtk else []
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	duration = options.strain * platens.height / closing + 0.5 * options.ramp
-	kind = ucs.TensionTest if options.test == "tension" else ucs.CompressionTest
+	kind = uniaxial.TensionTest if options.test == "tension" else uniaxial.CompressionTest
 	shown = options.pictures or options.vtk
 	test = kind(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical, rows=options.rows, snapshots=shown)
 	setup = time.perf_counter() - start
@@ -176,7 +178,7 @@ def read_options():
 	test.add_argument("--strain", type=positive, default=SUPPRESS, metavar="E", help="the test ends there at the latest (default: 0.005; in tension 0.001)")
 	test.add_argument("--stop", type=share, default=0.2, metavar="PART", help="the test ends when the stress stays below this part of the peak; 0: never")
 	output = parser.add_argument_group("output")
-	output.add_argument("--rows", type=count, default=ucs.ROWS, metavar="N", help="records up to the largest strain, at least 100")
+	output.add_argument("--rows", type=count, default=uniaxial.ROWS, metavar="N", help="records up to the largest strain, at least 100")
 	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
 	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
@@ -217,8 +219,8 @@ def check(options, parser):
 		parser.error("argument --wall-shear-stiffness: only bonded walls have one; add --bonded-walls")
 	if options.safety == 0:
 		parser.error("argument --safety: 0 leaves no time step")
-	if options.rows < ucs.SNAPSHOTS:
-		parser.error(f"argument --rows: {options.rows} must be at least {ucs.SNAPSHOTS}")
+	if options.rows < uniaxial.SNAPSHOTS:
+		parser.error(f"argument --rows: {options.rows} must be at least {uniaxial.SNAPSHOTS}")
 	require_writable(parser, "--out", options.out)
 
 

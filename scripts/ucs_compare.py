@@ -24,10 +24,12 @@ import os
 import time
 
 from yade import ddem
-from yade.ddem import commandline, parameter_tables, ucs, vtk
-from yade.ddem.commandline import count, not_negative, positive, require_writable, seed, share
-from yade.ddem.parameter_tables import number
-from yade.ddem.report import Report
+from yade.ddem import vtk
+from yade.ddem.reports import parameter_tables
+from yade.ddem.reports.parameter_tables import number
+from yade.ddem.reports.uniaxial import Report
+from yade.ddem.studies import commandline, uniaxial
+from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed, share
 
 WIDTH, HEIGHT = 0.10, 0.20  # [m]
 DENSITY = 2400  # of the concrete [kg/m³]
@@ -117,7 +119,7 @@ def crush(model, options):
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	duration = options.strain * HEIGHT / closing + 0.5 * options.ramp
 	recorders = [vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", model))] if options.vtk else []
-	test = ucs.CompressionTest(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical)
+	test = uniaxial.CompressionTest(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
 	run.setup, run.parameters = setup, [*parameters, ("time step", f"{1e6 * run.dt:.3g} µs", f"{options.safety:g} of the critical one")]

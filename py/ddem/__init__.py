@@ -13,29 +13,32 @@ Append a mesh of deformable triangles and load it::
 	ddem.run(until=2e-4)
 	print(platens.stress, block.damage.mean())
 
-SI units; tension positive. Sub-modules: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete law), :mod:`bonded` and :mod:`packing` (rigid bonded
-spheres), :mod:`calibration` and :mod:`virtualtest`, :mod:`plots`, :mod:`report`. Only :mod:`mesh`, :mod:`materialpoint`, :mod:`packing` and
-:mod:`calibration` work outside YADE.
-"""
-import importlib
+SI units; tension positive. The package is a library and three houses beside it:
 
+==================  ============================================================================================
+here                what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
+                    law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`
+:mod:`studies`      what scripts build and run: uniaxial tests, structures, calibration, campaigns
+:mod:`reports`      pages, tables and pictures of finished studies
+:mod:`verification` cases with a reference each
+==================  ============================================================================================
+
+The library imports nothing of the houses, studies nothing of reports. Only :mod:`mesh`, :mod:`materialpoint`,
+:mod:`packing`, :mod:`plots` and parts of the houses, such as :mod:`studies.calibration`, work outside YADE.
+"""
 from . import mesh
+from ._lazy import lazy
 
 # Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation", "EnergyBalance": "energy",
-	"materialpoint": None, "bonded": None, "packing": None, "calibration": None, "virtualtest": None, "esys": None, "plots": None,
-	"report": None, "verification": None, "vtk": None,
+	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None,
+	"studies": None, "reports": None, "verification": None,
 }
-
-
-def __getattr__(name):
-	if name not in _LAZY:
-		raise AttributeError(f"module 'yade.ddem' has no attribute '{name}'")
-	home = _LAZY[name]
-	module = importlib.import_module("." + (home or name), __name__)
-	return getattr(module, name) if home else module
-
-
-def __dir__():
-	return sorted(list(globals()) + list(_LAZY))
+#: shorter names of modules in the houses
+_SHORT = {
+	"calibration": "studies.calibration", "commandline": "studies.commandline", "esys": "studies.esys",
+	"structures": "studies.structures", "ucs": "studies.uniaxial", "virtualtest": "studies.virtualtest",
+	"report": "reports.uniaxial",
+}
+__getattr__, __dir__ = lazy(globals(), _LAZY, _SHORT)

@@ -18,8 +18,6 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, VTK_VERTEX, vtkCellArray, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
 
-from .snapshots import rotations
-
 #: order of the components of a symmetric tensor in VTK
 TENSOR = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
 #: values of the array "state" of a bond
@@ -153,7 +151,7 @@ def _triangles(block, sub_elements):
 
 def _spheres(sample):
 	arrays = {
-		"radius": sample.radii, "displacement": sample.displacements, "velocity": sample.velocities, "rotation": rotations(sample), "damage": sample.damage,
+		"radius": sample.radii, "displacement": sample.displacements, "velocity": sample.velocities, "rotation": sample.rotations, "damage": sample.damage,
 		"id": sample.ids
 	}
 	return grid(sample.positions, np.arange(len(sample)), VTK_VERTEX, arrays)

@@ -16,13 +16,14 @@ install(CODE "
 	message(STATUS \"Overlay prefix of links to \${stock}: ${overlay}\")
 " COMPONENT classes)
 
-# Modules that the checkout no longer has must not be found any more.
+# Modules that the checkout no longer has must not be found any more, nor folders, which Python would take for empty packages.
 install(CODE "
 	set(package \"${overlay}/${YADE_LIBRARY_SUBDIR}/py/yade/ddem\")
-	file(GLOB_RECURSE modules RELATIVE \"\${package}\" \"\${package}/*.py\")
-	foreach(module IN LISTS modules)
-		if(NOT EXISTS \"${PROJECT_SOURCE_DIR}/py/ddem/\${module}\")
-			file(REMOVE \"\${package}/\${module}\")
+	file(GLOB_RECURSE entries LIST_DIRECTORIES true RELATIVE \"\${package}\" \"\${package}/*\")
+	list(FILTER entries EXCLUDE REGEX \"[.]so$\")
+	foreach(entry IN LISTS entries)
+		if(NOT EXISTS \"${PROJECT_SOURCE_DIR}/py/ddem/\${entry}\")
+			file(REMOVE_RECURSE \"\${package}/\${entry}\")
 		endif()
 	endforeach()
 " COMPONENT python)

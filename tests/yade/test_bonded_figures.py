@@ -11,8 +11,8 @@ import time
 import pytest
 import script_modules
 
-from yade.ddem.campaign import FINISHED
 from yade.ddem.series import Series
+from yade.ddem.studies.campaign import FINISHED
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import time
 import pytest
 import script_modules
 
-from yade.ddem import virtualtest
+from yade.ddem.studies import virtualtest
 
 SCRIPT = script_modules.path("calibrate")
 SMALL = ["--model", "deformable", "--size", "0.025", "--velocity", "2"]

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from yade import BondedMat, O
-from yade.ddem import bonded, measures, packing
+from yade.ddem import bonded, packing
+from yade.ddem.studies import measures
 
 from recording import run_recording
 

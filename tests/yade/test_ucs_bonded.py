@@ -302,7 +302,7 @@ def test_options_reach_the_model(job, monkeypatch):
 	(["--out", "/proc/nowhere"], "--out: cannot write into /proc/nowhere"),
 ])
 def test_bad_options_are_refused_before_anything_runs(job, monkeypatch, capsys, tmp_path, arguments, message):
-	monkeypatch.setattr(job.ucs.CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
+	monkeypatch.setattr(job.uniaxial.CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
 	monkeypatch.chdir(tmp_path)
 	quick = [] if {"--radii", "--particles"} & set(arguments) else SMALL
 	with pytest.raises(SystemExit) as stopped:

@@ -8,7 +8,8 @@ import numpy as np
 from markupsafe import Markup, escape
 from matplotlib import rc_context
 
-from .. import pages, plots
+from .. import plots
+from ..reports import pages
 from .framework import GROUPS, Picture
 
 _FLOOR = 1e-16  # errors below are drawn there

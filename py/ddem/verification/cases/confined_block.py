@@ -3,7 +3,7 @@
 import numpy as np
 
 from yade import O
-from yade.ddem.structures import confined
+from yade.ddem.studies.structures import confined
 from yade.ddem.verification import case, tools
 
 

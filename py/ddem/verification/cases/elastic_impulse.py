@@ -3,7 +3,8 @@
 import numpy as np
 
 from yade import O
-from yade.ddem.structures import impulse, impulse_figures, impulse_reference, spall
+from yade.ddem.studies.structures import impulse, impulse_figures, spall
+from yade.ddem.verification import impulse_reference
 from yade.ddem.verification import case
 
 

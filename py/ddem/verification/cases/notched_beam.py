@@ -3,7 +3,7 @@
 import numpy as np
 
 from yade import DeformableElastMat, O, ddem
-from yade.ddem.structures import beam
+from yade.ddem.studies.structures import beam
 from yade.ddem.verification import case, freefem, statics, tools
 
 

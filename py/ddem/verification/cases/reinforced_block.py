@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from yade import O
-from yade.ddem.structures import reinforced, reinforced_figures, reinforced_statements, spall
+from yade.ddem.studies.structures import reinforced, reinforced_figures, reinforced_statements, spall
 from yade.ddem.verification import case
 
 SEEDS = (1, 2, 3)

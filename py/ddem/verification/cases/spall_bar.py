@@ -4,7 +4,7 @@ import numpy as np
 
 from yade import O
 from yade.ddem.materialpoint import MaterialPoint
-from yade.ddem.structures import spall, spall_figures
+from yade.ddem.studies.structures import spall, spall_figures
 from yade.ddem.verification import case
 
 

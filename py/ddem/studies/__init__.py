@@ -1,0 +1,23 @@
+# GPL v2 or later, see LICENSE.
+"""Studies: samples and structures that are built, loaded and measured, for scripts, verification cases and reports.
+
+=============================  ====================================================================================
+:mod:`uniaxial`                a sample crushed between platens or pulled apart; :mod:`runs`, :mod:`measures`
+                               and :mod:`snapshots`: what is kept of it, as plain data
+:mod:`virtualtest`             tests of a small specimen, in this YADE or each in its own
+:mod:`calibration`             material parameters for wanted strengths; :mod:`calibration_quantities`,
+                               :mod:`evaluations`
+:mod:`campaign`                many runs of a script; :mod:`processes`
+:mod:`bonded_study`            the study of bonded spheres
+:mod:`esys`                    ESyS-Particle as a peer
+:mod:`structures`              beam, bar and blocks
+:mod:`commandline`             options that scripts share
+=============================  ====================================================================================
+"""
+from .._lazy import lazy
+
+_MODULES = (
+	"bonded_study", "calibration", "calibration_quantities", "campaign", "commandline", "esys", "evaluations",
+	"measures", "processes", "runs", "snapshots", "structures", "uniaxial", "virtualtest"
+)
+__getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

@@ -1,0 +1,59 @@
+# GPL v2 or later, see LICENSE.
+"""What a sample looks like at an instant, as plain arrays that outlive the scene; pictures are drawn from these."""
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class TriangleSnapshot:
+	"""Deformable triangles at an instant."""
+	time: float  # [s]
+	nodes: np.ndarray  # positions (n, 2) [m]
+	triangles: np.ndarray  # rows of nodes (m, 3)
+	damage: np.ndarray  # of the sub-elements (m, 3) [-]
+	rotation: np.ndarray  # of the triangles (m,) [rad]
+	border: np.ndarray  # rows of nodes (b, 2) along the border of regions other than the default one
+
+	@classmethod
+	def of(cls, block, time):
+		mesh = block.mesh
+		inner = (mesh.neighbours >= 0) & (mesh.regions[mesh.neighbours] != mesh.regions[:, None]) & (mesh.regions[:, None] > 0)
+		edges = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2)
+		return cls(time, np.array(block.positions), mesh.triangles, np.array(block.sub_element_damage), np.array(block.rotation), edges[inner])
+
+
+@dataclass(frozen=True)
+class SphereSnapshot:
+	"""Bonded spheres at an instant."""
+	time: float  # [s]
+	centres: np.ndarray  # (n, 3) [m]
+	radii: np.ndarray  # (n,) [m]
+	damage: np.ndarray  # broken share of the bonds of each sphere (n,) [-]
+	rotation: np.ndarray  # about z (n,) [rad]
+	cracks: np.ndarray  # traces in the plane of the picture of the broken bonds' sections, which moved with their spheres (k, 2, 2) [m]
+	tension: np.ndarray  # whether the bond failed in tension (k,)
+
+	@classmethod
+	def of(cls, sample, time):
+		centres, broken = sample.positions, sample.broken
+		row = np.zeros(int(sample.ids.max()) + 1, dtype=int)
+		row[sample.ids] = np.arange(len(sample.ids))
+		first, second = centres[row[broken["id1"]]], centres[row[broken["id2"]]]
+		return cls(
+			time, centres, sample.radii, sample.damage, sample.rotations[:, 2], crack_traces(first, second, broken["radius"]), broken["mode"] == "tension"
+		)
+
+
+def crack_traces(first, second, radius):
+	"""Lines (k, 2, 2) in which the sections of bonds between the points *first* and *second* (k, 3) meet the plane z = const through their middles: cracks, as seen
+	in a section of the sample.
+
+	A section that lies in that plane has no trace; its line has no length.
+	"""
+	axis = (second - first)[:, :2]
+	length = np.linalg.norm(axis, axis=1)
+	along = np.column_stack([-axis[:, 1], axis[:, 0]]) / np.where(length > 0, length, 1)[:, None]
+	half = np.where(length > 0, radius, 0)[:, None] * along
+	middle = 0.5 * (first + second)[:, :2]
+	return np.stack([middle - half, middle + half], axis=1)
