@@ -2,6 +2,7 @@
 #include <pkg/ddem/DeformableElastMat.hpp>
 
 #include <sstream>
+#include <typeinfo>
 
 namespace yade {
 
@@ -35,6 +36,27 @@ void DeformableElastMat::validate() const
 	else if (!(rotationStiffness >= 0 && std::isfinite(rotationStiffness)))
 		text << where() << "rotationStiffness = " << rotationStiffness << " must be zero or positive (2 in the report)";
 	if (!text.str().empty()) throw std::invalid_argument(text.str());
+	try {
+		law().check(); // what else the law asks of its parameters
+	} catch (const std::invalid_argument& error) {
+		throw std::invalid_argument(where() + error.what());
+	}
+}
+
+LawOfMaterial DeformableElastMat::law() const
+{
+	ddem::ElasticParameters p;
+	copyElasticity(p);
+	return lawOf<ddem::Elastic>(typeid(DeformableElastMat), p, 0);
+}
+
+LawOfMaterial DeformableElastMat::ownLaw() const
+{
+	LawOfMaterial own = law();
+	if (own.material == typeid(*this)) return own;
+	throw std::logic_error(
+	        getClassName() + " does not say which law it has and would run as " + own.name
+	        + ": its class needs DDEM_LAW_OF_MATERIAL, see pkg/ddem/LawMaterial.hpp");
 }
 
 void DeformableElastMat::pyHandleCustomCtorArgs(boost::python::tuple& /*args*/, boost::python::dict& kw)

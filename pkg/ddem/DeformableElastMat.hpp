@@ -4,7 +4,23 @@
 
 #include <pkg/ddem/YadeInclude.hpp>
 
+#include <pkg/ddem/kernel/laws/Elastic.hpp>
+
+#include <functional>
+#include <memory>
+#include <typeindex>
+#include <vector>
+
 namespace yade {
+
+/// The law of a material with its parameters, as the engine asks for it.
+struct LawOfMaterial {
+	std::type_index                                  material; ///< class that says so
+	std::string                                      name;     ///< of the law
+	std::function<std::unique_ptr<ddem::LawGroup>()> makeGroup;
+	std::function<void()>                            check; ///< throws std::invalid_argument for a parameter out of bounds
+	std::vector<double>                              values; ///< of all parameters, and the mask of effects
+};
 
 class DeformableElastMat : public FrictMat {
 public:
@@ -18,7 +34,15 @@ public:
 	void setModuli(Real newBulk, Real newShear);
 
 	/// Checks all parameters. \throws std::invalid_argument naming the parameter, its value, its unit and the material's label.
-	virtual void validate() const;
+	void validate() const;
+
+	/// The law of this material. A class that derives from another material and does not say its own (DDEM_LAW_OF_MATERIAL) is refused:
+	/// it would run as the one it derives from.
+	virtual LawOfMaterial law() const;
+	/// \throws std::logic_error for a class that does not say its law.
+	LawOfMaterial ownLaw() const;
+	/// Mask of the law's effects that are switched on.
+	virtual unsigned switchedOn() const { return 0; }
 
 	void pyHandleCustomCtorArgs(boost::python::tuple& args, boost::python::dict& kw) override;
 	void postLoad(DeformableElastMat&) { validate(); }
@@ -38,6 +62,28 @@ public:
 	REGISTER_CLASS_INDEX(DeformableElastMat, FrictMat);
 
 protected:
+	void copyElasticity(ddem::ElasticParameters& p) const
+	{
+		p.bulk              = bulk();
+		p.shear             = shear();
+		p.rotationStiffness = rotationStiffness;
+		p.density           = density;
+	}
+	template <class Law>
+	static LawOfMaterial lawOf(const std::type_info& material, const typename Law::Parameters& parameters, unsigned effects)
+	{
+		std::vector<double> values;
+		for (const auto& entry : Law::Parameters::entries())
+			values.push_back(entry.get(&parameters));
+		values.push_back(effects);
+		const unsigned effective = Law::effective(parameters, effects);
+		const bool     plain     = Law::elasticWithoutEffects && effective == 0;
+		const auto     make      = [=]() -> std::unique_ptr<ddem::LawGroup> {
+                        if (plain) return ddem::makeGroup<ddem::Elastic>(parameters, 0);
+                        return ddem::makeGroup<Law>(parameters, effective);
+		};
+		return { material, Law::name, make, [=] { typename Law::Prepared prepared(parameters); (void)prepared; }, values };
+	}
 	std::string where() const;
 	void        requirePositive(const char* name, Real value, const char* unit) const;
 };

@@ -1,14 +1,16 @@
 // GPL v2 or later, see LICENSE.
-// The engine that computes and moves all deformable triangles of a scene.
+// The engine that computes and moves deformable triangles of a scene.
 #pragma once
 
-#include <pkg/ddem/DeformableAssembly.hpp>
+#include <pkg/ddem/EngineOrder.hpp>
+#include <pkg/ddem/Exposure.hpp>
+#include <pkg/ddem/TimeStepGuard.hpp>
 
 #include <chrono>
 
 namespace yade {
 
-class DeformableTimeStepper;
+struct SampleSettings;
 
 class DeformableEngine : public GlobalEngine {
 public:
@@ -16,21 +18,28 @@ public:
 
 	void action() override;
 
-	/// The one engine of this class in the current scene. \throws std::runtime_error if there is none or more than one.
-	static DeformableEngine& ofCurrentScene();
+	/// The sample with a triangle's row in the present scene, with what was changed in the triangle's State taken up; null where there is none.
+	static shared_ptr<Exposure> currentOf(const shared_ptr<Exposure>& sample, std::size_t row);
+	/// Lets all engines in O.engines read the scene, for what has not been read.
+	static void readScene();
+	/// The engines of this class in a scene.
+	static std::vector<DeformableEngine*> in(const Scene& scene);
+
 	/// Builds the arrays from the scene's bodies unless they are up to date.
-	void assembleIfNeeded(Scene& of);
+	void readIfNeeded(Scene& of);
 	/// What Python reads goes through here: the arrays, with what was changed in State taken up.
-	DeformableAssembly& current();
-	Real                  criticalTimeStep();
+	Exposure& current();
+	Real      criticalTimeStep();
 	/// Bound on the time step [s] while a step is under way; a result of at least `enough` says no more.
-	Real                  stableStep(Scene& of, Real enough);
+	Real stableStep(Scene& of, Real enough);
 	/// Whether the time step has yet to be compared with the bound of the present triangles: they or O.dt have changed.
-	bool                  timeStepUnchecked(Scene& of) { return stale || !assembly.upToDate(of) || of.dt != checkedStep; }
+	bool                  timeStepUnchecked(Scene& of);
 	Real                  timeStepOfScene() const;
 	boost::python::tuple  rulingTriangle();
 	boost::python::object array(const std::string& name);
 	boost::python::object values(const std::string& name);
+	boost::python::list   fields();
+	boost::python::list   groups();
 
 	void preSave(DeformableEngine&);
 	void postSave(DeformableEngine&);
@@ -47,10 +56,17 @@ public:
 		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old; after O.pause(), reading anything from the engine brings it up to date.",
 		((std::string,rotation,"cosserat",Attr::triggerPostLoad,"How elements follow rotation: 'cosserat' (cores rotate, tied by :yref:`rotationStiffness<DeformableElastMat.rotationStiffness>`), 'corotational' (frame from the polar decomposition of the vertices' deformation, no rotational inertia) or 'none' (small rotations, cheapest)."))
 		((Real,vertexShare,1./6,Attr::triggerPostLoad,"Share :math:`\\alpha` [-] of a triangle's mass that sits in its vertices, a third of it in each; below 1/4 with 'cosserat'. Governs the stable time step."))
-		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored."))
-		((Real,damping,0,,"Coefficient [-] of Cundall's local non-viscous damping, as :yref:`NewtonIntegrator.damping`."))
-		((int,groupMask,1<<20,Attr::triggerPostLoad,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`."))
+		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored. Zero: that of :yref:`NewtonIntegrator.gravity` where O.engines has one."))
+		((Real,damping,-1,,"Coefficient [-] of Cundall's local non-viscous damping, as :yref:`NewtonIntegrator.damping`. Negative: none, and a "
+			"NewtonIntegrator with a damping other than YADE's default is refused, since triangles would not feel it."))
+		((int,groupMask,1<<20,Attr::triggerPostLoad,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`. "
+			"Where O.engines has several DeformableEngine each needs a bit of its own."))
+		((std::string,inverted,"stop",Attr::triggerPostLoad,"What to do when a triangle is inside out, that is, its vertices have changed their sense: 'stop' the run with the triangle, its place and the ratio of its areas, or 'warn' once. "
+			"Looked at every 50 steps (10 with an equation of state). A sample that is crushed beyond its bearing capacity may be let go on."))
+		((std::vector<Body::id_t>,ids,,Attr::triggerPostLoad,"Ids of the triangles that this engine moves, with their nodes. Empty: those whose group mask has the engine's bit, "
+			"and, where it is the only engine without ids, all that no other engine takes."))
 		((vector<Real>,savedState,,Attr::hidden,"State of all deformable bodies in a saved scene"))
+		((vector<string>,savedFields,,Attr::hidden,"Names of the fields of the laws' state in savedState"))
 		((int,savedVersion,0,Attr::hidden,"Version of the saved state"))
 		((bool,exposed,true,Attr::hidden,"Whether State agreed with the arrays when saved")),
 		/*ctor*/,
@@ -62,29 +78,29 @@ public:
 			"coreRotation, coreSpin (triangles,) [rad, rad/s] where cores rotate. Forces are the internal forces of the last step. Views stay valid until triangles are added; write to State rather than to a view.")
 		.def("values",&DeformableEngine::values,(boost::python::arg("name")),"Numpy array, computed now, of a quantity of the whole sample.\n\n"
 			"nodeIds (nodes,), triangleIds (triangles,): body ids; vertices (triangles, 3): row numbers of the nodes; area, rotation (triangles,) [m², rad]; "
-			"stress, strain, plasticStrain, damageTensor (triangles, 3, 4): xx, yy, zz, xy of the sub-elements in global axes [Pa, -]; damage (triangles, 3) [-]: η/η_max; fractureEnergy (triangles,) [J/m³].")
+			"stress, strain (triangles, 3, 4): xx, yy, zz, xy of the sub-elements in global axes [Pa, -], at the current positions; damage (triangles, 3) [-]: η/η_max; fractureEnergy (triangles,) [J/m³]; "
+			"tilePlace (triangles,): place in the tiles, by which sums are taken. Any field that a law remembers, by its name (:yref:`DeformableEngine.fields`): (triangles, 3), or (triangles, 3, 4) in global axes for tensors; "
+			"zero where a triangle's law has no such field.")
+		.def("fields",&DeformableEngine::fields,"What the laws of this engine's triangles remember: a list of (name, unit, components).")
+		.def("groups",&DeformableEngine::groups,"Groups of triangles that share law, effects and thickness: a list of dicts with law, material (label), thickness [m], first and count (rows), effects (names of those on), effectsOff, bytes (of state per triangle), fields.")
 	);
 	// clang-format on
 	DECLARE_LOGGER;
 
 private:
-	DeformableAssembly                    assembly;
-	std::vector<const Engine*>            checkedEngines;
-	std::vector<const NewtonIntegrator*>  integrators;
-	const DeformableTimeStepper*          stepper       = nullptr; ///< the one in O.engines, if any
-	bool                                  collectForces = false;
-	bool                                  stale         = true; ///< settings changed since the arrays were assembled
-	Real                                  checkedStep   = 0;    ///< time step that was last found stable [s]
-	long                                  checkInterval = 1;    ///< steps between comparisons
+	shared_ptr<Exposure>                  sample;
+	EngineOrder                           order;
+	TimeStepGuard                         guard;
+	bool                                  stale   = true; ///< settings changed since the arrays were built
+	bool                                  virgin  = false; ///< the arrays were built from State alone, and no step was made
 	std::chrono::steady_clock::time_point lastExposure {};
-	int                                   ids[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
+	int                                   ids_[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
 
 	ddem::RotationTreatment rotationTreatment() const;
-	void                    checkEngines();
-	void                    checkTimeStep();
-	CarriedState            stateToCarry(const Scene&) const;
-	void                    maskIntegrators(const Scene&) const;
-	void                    checkDrivenNodes() const;
+	SampleSettings          settings(const Scene& of) const;
+	StateStore              stateToCarry(const Scene&) const;
+	bool                    upToDate(Scene& of);
+	void                    checkStart() const;
 	void                    bookEnergy(const ddem::StepEnergy&);
 	[[noreturn]] void       stopAtNotFinite();
 };

@@ -3,6 +3,8 @@
 
 #include <pkg/ddem/DeformableEngine.hpp>
 
+#include <limits>
+
 namespace yade {
 
 DDEM_PLUGIN((DeformableTimeStepper))
@@ -11,6 +13,7 @@ CREATE_LOGGER(DeformableTimeStepper);
 namespace {
 
 	// A leapfrog whose step alternates is unstable well below the bound on a constant step (parametric resonance), so the step changes seldom.
+	constexpr Real dtOfYade     = 1e-8; ///< O.dt of a new scene [s]
 	constexpr Real worthRaising = 1.05; ///< a step that could grow by less stays as it is
 	constexpr Real slack        = 0.1;  ///< part of the rest up to the critical step that is used up before the step is lowered: small strains change nothing
 
@@ -33,9 +36,18 @@ bool DeformableTimeStepper::isActivated()
 
 void DeformableTimeStepper::computeTimeStep(Scene* now)
 {
-	if (largest == 0) largest = now->dt;
-	const Real bound = DeformableEngine::ofCurrentScene().stableStep(*now, largest / safety), wanted = std::min(largest, safety * bound);
-	if (now->dt > largest || now->dt > (safety + slack * (1 - safety)) * bound || wanted > worthRaising * now->dt) now->dt = wanted;
+	// O.dt as YADE starts with it is no choice of anybody's
+	if (largest == 0) largest = now->dt == dtOfYade ? std::numeric_limits<Real>::infinity() : now->dt;
+	Real bound = std::numeric_limits<Real>::infinity();
+	const auto engines = DeformableEngine::in(*now);
+	if (engines.empty())
+		throw std::runtime_error(
+		        "O.engines has no DeformableEngine, whose triangles DeformableTimeStepper looks at: add DeformableEngine() after the "
+		        "engines that add forces");
+	for (DeformableEngine* engine : engines)
+		bound = std::min(bound, engine->stableStep(*now, largest / safety));
+	const Real wanted = std::min(largest, safety * bound);
+	if (!(now->dt > 0 && now->dt <= largest) || now->dt > (safety + slack * (1 - safety)) * bound || wanted > worthRaising * now->dt) now->dt = wanted;
 }
 
 } // namespace yade

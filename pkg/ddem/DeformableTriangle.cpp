@@ -8,16 +8,20 @@ namespace yade {
 
 DDEM_PLUGIN((DeformableNode)(DeformableTriangle))
 
-const ddem::TriangleSystem& DeformableTriangle::state() const
+std::atomic<unsigned long> DeformableTriangle::changes { 0 };
+
+shared_ptr<Exposure> DeformableTriangle::current() const
 {
-	DeformableEngine::ofCurrentScene().current(); // assembles, and takes up what was changed in State
-	if (!system) throw std::runtime_error("this DeformableTriangle is not in the scene (O.bodies): it has no state yet");
-	return *system;
+	if (const auto known = DeformableEngine::currentOf(exposure.lock(), row)) return known;
+	DeformableEngine::readScene(); // not read yet
+	if (const auto known = DeformableEngine::currentOf(exposure.lock(), row)) return known;
+	throw std::runtime_error(
+	        "this DeformableTriangle has no state: it is not in the scene (O.bodies), or no DeformableEngine in O.engines takes it");
 }
 
-boost::python::list DeformableTriangle::globalTensors(const std::array<ddem::PlaneTensor, 3>& tensors) const
+boost::python::list DeformableTriangle::globalTensors(const Exposure& in, const std::array<ddem::PlaneTensor, 3>& tensors) const
 {
-	const Real          angle = state().frameAngle(slot);
+	const Real          angle = in.system->frameAngle(row);
 	boost::python::list result;
 	for (const auto& tensor : tensors) {
 		const ddem::PlaneTensor t = ddem::rotated(tensor, angle);
@@ -31,26 +35,41 @@ boost::python::list DeformableTriangle::globalTensors(const std::array<ddem::Pla
 	return result;
 }
 
-boost::python::list DeformableTriangle::concreteTensors(ddem::PlaneTensor ddem::ConcreteState::*member) const
+boost::python::list DeformableTriangle::fieldTensors(const char* name) const
 {
-	const ddem::TriangleSystem&      s = state();
+	const auto                       in    = current();
+	const ddem::LawGroup&            group = in->system->groupOf(row);
 	std::array<ddem::PlaneTensor, 3> tensors {};
-	if (const ddem::ConcreteState* sub = s.concreteStates(slot))
-		for (std::size_t k = 0; k < 3; k++)
-			tensors[k] = sub[k].*member;
-	return globalTensors(tensors);
+	const ddem::StateField*          field = group.field(name);
+	if (field && field->kind == ddem::FieldKind::Tensor)
+		for (std::size_t k = 0; k < 3; k++) {
+			double t[4];
+			group.get(*field, row - group.begin, k, t);
+			tensors[k] = { t[0], t[1], t[2], t[3] };
+		}
+	return globalTensors(*in, tensors);
 }
 
-boost::python::list DeformableTriangle::stress() const { return globalTensors(state().stress(slot)); }
-boost::python::list DeformableTriangle::strain() const { return globalTensors(state().strain(slot)); }
-boost::python::list DeformableTriangle::plasticStrain() const { return concreteTensors(&ddem::ConcreteState::plasticStrain); }
-boost::python::list DeformableTriangle::damageTensor() const { return concreteTensors(&ddem::ConcreteState::damage); }
-Real                DeformableTriangle::rotation() const { return state().frameAngle(slot); }
-Real                DeformableTriangle::area() const { return state().reference(slot).area(); }
+boost::python::list DeformableTriangle::stress() const
+{
+	const auto in = current();
+	return globalTensors(*in, in->stress(row));
+}
+
+boost::python::list DeformableTriangle::strain() const
+{
+	const auto in = current();
+	return globalTensors(*in, in->system->strain(row));
+}
+
+boost::python::list DeformableTriangle::plasticStrain() const { return fieldTensors("plasticStrain"); }
+boost::python::list DeformableTriangle::damageTensor() const { return fieldTensors("damageTensor"); }
+Real                DeformableTriangle::rotation() const { return current()->system->frameAngle(row); }
+Real                DeformableTriangle::area() const { return current()->system->topology.reference(row).area(); }
 
 Real DeformableTriangle::damage() const
 {
-	const auto sub = state().subElementDamage(slot);
+	const auto sub = current()->system->damage(row);
 	return (sub[0] + sub[1] + sub[2]) / 3;
 }
 

@@ -5,16 +5,27 @@
 #include <pkg/ddem/YadeInclude.hpp>
 #include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
 
+#include <atomic>
+#include <boost/weak_ptr.hpp>
 
 namespace yade {
+
+class Exposure;
 
 class DeformableTriangle : public Shape {
 public:
 	virtual ~DeformableTriangle() = default;
 
-	/// Where the engine keeps this triangle's state; empty until it has assembled the scene.
+	/// Where the engine keeps this triangle's state; empty until it has read the scene.
 	shared_ptr<ddem::TriangleSystem> system;
-	std::size_t                         slot = 0;
+	boost::weak_ptr<Exposure>          exposure;
+	std::size_t                      row = 0;
+
+	/// What it says beside its nodes.
+	std::array<Real, 3> values() const { return { thickness, fractureEnergy, bandFactor }; }
+	/// Counts what was said by all triangles, so that an engine need not ask each.
+	static std::atomic<unsigned long> changes;
+	void                              postLoad(DeformableTriangle&) { changes++; }
 
 	boost::python::list stress() const;
 	boost::python::list strain() const;
@@ -31,9 +42,9 @@ public:
 		"keeps stress and damage; what is read here is always the current state.\n\n"
 		"Tensors are in global axes, one per sub-element, tension positive.",
 		((Vector3i,nodes,Vector3i(-1,-1,-1),,"Ids of the three node bodies, counter-clockwise in the xy plane."))
-		((Real,thickness,1,,"Thickness [m] of the plane-strain slice."))
-		((Real,fractureEnergy,-1,,"This triangle's own fracture energy :math:`G_f` [J/m³]; negative: that of its :yref:`ConcreteDamageMat`."))
-		((Real,bandFactor,1,,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
+		((Real,thickness,1,Attr::triggerPostLoad,"Thickness [m] of the plane-strain slice."))
+		((Real,fractureEnergy,-1,Attr::triggerPostLoad,"This triangle's own fracture energy :math:`G_f` [J/m³]; negative: that of its :yref:`ConcreteDamageMat`."))
+		((Real,bandFactor,1,Attr::triggerPostLoad,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
 		((Matrix3r,initialDamage,Matrix3r::Zero(),,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
 		createIndex();,
 		.add_property("stress",&DeformableTriangle::stress,"Stress [Pa] of the three sub-elements, list of Matrix3.")
@@ -48,9 +59,9 @@ public:
 	REGISTER_CLASS_INDEX(DeformableTriangle, Shape);
 
 private:
-	const ddem::TriangleSystem& state() const;
-	boost::python::list         concreteTensors(ddem::PlaneTensor ddem::ConcreteState::*member) const;
-	boost::python::list         globalTensors(const std::array<ddem::PlaneTensor, 3>& tensors) const;
+	shared_ptr<Exposure> current() const;
+	boost::python::list  globalTensors(const Exposure& in, const std::array<ddem::PlaneTensor, 3>& tensors) const;
+	boost::python::list  fieldTensors(const char* name) const;
 };
 REGISTER_SERIALIZABLE(DeformableTriangle);
 

@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""One material point of concrete: stress-strain curves of the law that :yref:`ConcreteDamageMat` gives to deformable triangles, without a scene.
+"""One material point: stress-strain curves of a law of deformable triangles, by default that of :yref:`ConcreteDamageMat`, without a scene.
 
 Crush a point of concrete at 1/s, first free and then in a pressure cell::
 
@@ -30,7 +30,10 @@ import numpy as np
 from . import _materialpoint
 
 COMPONENTS = ("xx", "yy", "zz", "xy")
-EFFECTS = tuple(_materialpoint.effects)
+LAWS = tuple(_materialpoint.laws())
+"""Names of the laws; a material's is its class without *Mat*."""
+CONCRETE = "ConcreteDamage"
+EFFECTS = tuple(_materialpoint.effects(CONCRETE))
 """Names of the effects, as :yref:`ConcreteDamageMat` has them."""
 
 Peak = namedtuple("Peak", "stress strain")
@@ -43,12 +46,21 @@ def concrete(**changes):
 
 	:raises ValueError: a name that does not exist (naming the nearest), or a value that is not allowed (naming value, unit and way out).
 	"""
-	parameters = _materialpoint.defaults()
+	return law_parameters(CONCRETE, **changes)
+
+
+def law_parameters(law, **changes):
+	"""Parameters of any law by name, with *changes*: a dict.
+
+	:param law: one of :data:`LAWS`.
+	:raises ValueError: as :func:`concrete`, and for a law that does not exist.
+	"""
+	parameters = {name: default for name, default, *_ in _materialpoint.parameters(law)}
 	for name, value in changes.items():
 		if name not in parameters:
 			raise ValueError(f"unknown parameter {name!r}{_nearest(name, parameters)}; there are: {', '.join(parameters)}")
 		parameters[name] = _number(value, name)
-	_materialpoint.validate(parameters)
+	_materialpoint.validate(law, parameters)
 	return parameters
 
 
@@ -59,14 +71,28 @@ class PathResult:
 	time: np.ndarray  # [s]
 	strain: np.ndarray  # [-], (n, 4)
 	stress: np.ndarray  # [Pa], (n, 4)
-	plastic_strain: np.ndarray  # [-], (n, 4)
-	damage: np.ndarray  # damage tensor [-], (n, 4)
-	damage_ratio: np.ndarray  # damage parameter, 0 intact to 1 [-]
-	modulus_factor: np.ndarray  # of the equation of state on the moduli [-]
+	stored_energy: np.ndarray  # [J/m³]
 	plastic_dissipation: np.ndarray  # [J/m³]
 	damage_dissipation: np.ndarray  # by damage and by closing and opening cracks [J/m³]
-	stored_energy: np.ndarray  # [J/m³]
+	damage_ratio: np.ndarray  # damage parameter, 0 intact to 1 [-]
+	tangent_factor: np.ndarray  # largest tangent modulus over the initial one, for the time step [-]
+	fields: dict  # what the law remembers, by name: (n,) or (n, components)
 	axial_start: float = 0.0  # axial strain where axial loading began [-]
+
+	@property
+	def modulus_factor(self):
+		"""Factor of the equation of state on the moduli [-]; 1 where the law has none."""
+		return 1 + self.fields.get("stiffening", np.zeros(len(self.time)))
+
+	@property
+	def plastic_strain(self):
+		"""Plastic strain [-], (n, 4); zero where the law has none."""
+		return self.fields.get("plasticStrain", np.zeros_like(self.strain))
+
+	@property
+	def damage(self):
+		"""Damage tensor [-], (n, 4); zero where the law has none."""
+		return self.fields.get("damageTensor", np.zeros_like(self.strain))
 
 	@property
 	def axial_strain(self):
@@ -91,26 +117,32 @@ class PathResult:
 
 
 class MaterialPoint:
-	"""A point of concrete that remembers its state.
+	"""A point that remembers its state.
 
-	:param material: None for the defaults of :func:`concrete`; a dict of parameters; or any object with attributes of these names, such as a
+	:param material: None for the law's defaults; a dict of parameters; or any object with attributes of these names, such as a
 		:yref:`ConcreteDamageMat` (missing ones keep their default).
-	:param effects: names of the effects to simulate, of :data:`EFFECTS`. None: those that the material switches on (all, for a dict).
+	:param effects: names of the law's effects to simulate, of :data:`EFFECTS` for concrete. None: those that the material switches on (all, for a dict).
 	:param damage: pre-existing damage tensor Ω_0 (xx, yy, zz, xy) [-].
 	:param band_factor: of a crack band, on the fracture energy once flow has localised [-], see :mod:`crackband`.
+	:param law: one of :data:`LAWS`. None: that of the material's class, concrete for a dict.
+	:param area: of the triangle, for laws that ask for its size [m²].
 	:raises ValueError: bad parameter, effect, damage or factor.
 	"""
 
-	def __init__(self, material=None, effects=None, damage=(0, 0, 0, 0), band_factor=1.0):
-		self.parameters = _parameters(material)
-		self.effects = _effects(material, effects)
-		mask = sum(_materialpoint.effects[name] for name in self.effects) | _materialpoint.energy
-		self._point = _materialpoint.Point(parameters=self.parameters, effects=mask, damage=_tensor(damage, "damage"), bandFactor=_number(band_factor, "band_factor"))
+	def __init__(self, material=None, effects=None, damage=(0, 0, 0, 0), band_factor=1.0, law=None, area=1e-4):
+		self.law = _law(material, law)
+		self.parameters = _parameters(self.law, material)
+		bits = _materialpoint.effects(self.law)
+		self.effects = _effects(tuple(bits), material, effects)
+		self._point = _materialpoint.Point(
+			law=self.law, parameters=self.parameters, effects=sum(bits[name] for name in self.effects) | _materialpoint.energy,
+			damage=_tensor(damage, "damage"), bandFactor=_number(band_factor, "band_factor"), area=_number(area, "area")
+		)
 
 	@property
 	def state(self):
 		"""The present state, a :class:`PathResult` of one row."""
-		return _result([self._point.row()])
+		return self._result([self._point.row()])
 
 	def uniaxial(self, rate, until, confinement=0.0, step=None, every=1):
 		"""Uniaxial stress: yy driven, xx and zz held at minus *confinement*.
@@ -141,7 +173,7 @@ class MaterialPoint:
 		:raises RuntimeError: the material does not bear a prescribed stress; the point then stays at the last step that worked.
 		"""
 		targets, control = _targets(strain or {}, stress or {}, self.state)
-		return _result([self._run(control, target, duration, steps, every) for target in targets])
+		return self._result([self._run(control, target, duration, steps, every) for target in targets])
 
 	def _axial(self, name, rate, until, confinement, step, every, free):
 		rate, until, confinement = (_number(value, f"{name}: {what}") for value, what in ((rate, "rate"), (until, "until"), (confinement, "confinement")))
@@ -162,7 +194,16 @@ class MaterialPoint:
 			at = COMPONENTS.index(component)
 			target[at], control[at] = -confinement, "s"
 		steps = max(1, int(np.ceil(abs(until) / step - 1e-9)))
-		return _result([self._run("".join(control), target, until / rate, steps, every)], float(start[1]))
+		return self._result([self._run("".join(control), target, until / rate, steps, every)], float(start[1]))
+
+	def _result(self, blocks, axial_start=0.0):
+		rows = np.concatenate(blocks)
+		fields, column = {}, 14
+		for name, _, components in self._point.fields():
+			values = rows[:, column:column + components]
+			fields[name] = values[:, 0] if components == 1 else values
+			column += components
+		return PathResult(rows[:, 0], rows[:, 1:5], rows[:, 5:9], *(rows[:, k] for k in range(9, 14)), fields, axial_start)
 
 	def _run(self, control, target, duration, steps, every):
 		return self._point.run(
@@ -174,32 +215,35 @@ class MaterialPoint:
 		)
 
 
-def _result(blocks, axial_start=0.0):
-	rows = np.concatenate(blocks)
-	tensors = [rows[:, 1 + 4 * k:5 + 4 * k] for k in range(4)]
-	return PathResult(rows[:, 0], *tensors, *(rows[:, k] for k in range(17, 22)), axial_start)
+def _law(material, law):
+	if law is None:
+		name = type(material).__name__
+		law = name[:-3] if name.endswith("Mat") and name[:-3] in LAWS else CONCRETE
+	if law not in LAWS:
+		raise ValueError(f"law {law!r} is unknown; there are {', '.join(LAWS)}")
+	return law
 
 
-def _parameters(material):
+def _parameters(law, material):
 	if material is None:
-		return concrete()
+		return law_parameters(law)
 	if isinstance(material, Mapping):
-		return concrete(**material)
-	found = {name: getattr(material, name) for name in _materialpoint.defaults() if hasattr(material, name)}
+		return law_parameters(law, **material)
+	found = {name: getattr(material, name) for name, *_ in _materialpoint.parameters(law) if hasattr(material, name)}
 	if not found:
-		raise ValueError(f"{material!r} has none of the parameters of concrete; give a dict, or an object with attributes such as bulk, shear, strength")
-	return concrete(**found)
+		raise ValueError(f"{material!r} has none of the parameters of {'concrete' if law == CONCRETE else law}; give a dict, or an object with attributes such as bulk, shear, strength")
+	return law_parameters(law, **found)
 
 
-def _effects(material, effects):
+def _effects(known, material, effects):
 	if effects is None:
 		if material is None or isinstance(material, Mapping):
-			return EFFECTS
-		return tuple(name for name in EFFECTS if getattr(material, name, True))
-	unknown = sorted(set(effects) - set(EFFECTS)) if not isinstance(effects, str) else [effects]
+			return known
+		return tuple(name for name in known if getattr(material, name, True))
+	unknown = sorted(set(effects) - set(known)) if not isinstance(effects, str) else [effects]
 	if unknown:
-		raise ValueError(f"effects: {unknown[0]!r} is unknown; give a set of {', '.join(EFFECTS)}")
-	return tuple(name for name in EFFECTS if name in effects)
+		raise ValueError(f"effects: {unknown[0]!r} is unknown; give a set of {', '.join(known)}")
+	return tuple(name for name in known if name in effects)
 
 
 def _targets(strain, stress, state):

@@ -2,7 +2,8 @@
 // What the tests of the concrete law share: random tensors, rotated axes, full 3×3 matrices.
 #pragma once
 
-#include <pkg/ddem/kernel/laws/ConcreteLaw.hpp>
+#include <pkg/ddem/kernel/laws/ConcreteDamage.hpp>
+#include <pkg/ddem/kernel/triangles/PointOf.hpp>
 
 #include <Eigen/Dense>
 
@@ -11,6 +12,16 @@
 
 namespace yade::ddem::test {
 
+using MaterialPoint = PointOf<ConcreteDamage>;
+using PathPoint     = MaterialPoint::PathPoint;
+
+/// advanceConcrete for a mask known at run time.
+using ConcreteUpdate = void (*)(const PreparedConcrete&, const FractureEnergyOf<double>&, const PlaneTensor& strain, double dt, ConcreteState&);
+inline ConcreteUpdate concreteUpdate(unsigned effects)
+{
+	return withMask<ConcreteDamage>(effects, [](auto mask) -> ConcreteUpdate { return &advanceConcrete<mask(), double>; });
+}
+
 inline Eigen::Matrix3d matrixOf(const PlaneTensor& t)
 {
 	Eigen::Matrix3d m;
@@ -18,6 +29,7 @@ inline Eigen::Matrix3d matrixOf(const PlaneTensor& t)
 	return m;
 }
 
+using yade::ddem::tensorOf;
 inline PlaneTensor tensorOf(const Eigen::Matrix3d& m) { return { m(0, 0), m(1, 1), m(2, 2), 0.5 * (m(0, 1) + m(1, 0)) }; }
 
 inline double distance(const PlaneTensor& a, const PlaneTensor& b) { return norm(a - b); }

@@ -2,6 +2,8 @@
 // Triangles, meshes and systems that the tests of the deformable triangles share.
 #pragma once
 
+#include <pkg/ddem/kernel/laws/ConcreteDamage.hpp>
+#include <pkg/ddem/kernel/laws/Elastic.hpp>
 #include <pkg/ddem/kernel/triangles/ElementFrame.hpp>
 #include <pkg/ddem/kernel/triangles/StableStep.hpp>
 #include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
@@ -113,61 +115,80 @@ inline Mesh rectangle(int columns, int rows, double width, double height, double
 
 inline Mesh single(const Vertices& v) { return { { v[0], v[1], v[2] }, { { 0, 1, 2 } } }; }
 
+/// Virgin groups of one law that end at the given rows, with the elasticity of the material.
+template <class Law>
+inline void setGroups(
+        TriangleSystem&                 system,
+        const Material&                 material,
+        typename Law::Parameters        parameters,
+        unsigned                        effects,
+        const std::vector<std::size_t>& ends,
+        TriangleProperties              properties = TriangleProperties())
+{
+	parameters.bulk              = material.bulk;
+	parameters.shear             = material.shear;
+	parameters.rotationStiffness = material.rotationStiffness;
+	parameters.density           = material.density;
+	system.group.clear();
+	std::size_t begin = 0;
+	for (const std::size_t end : ends) {
+		auto group                       = makeGroup<Law>(parameters, effects);
+		group->begin                     = begin;
+		group->end                       = end;
+		group->constants.thickness       = material.thickness;
+		group->constants.rotationModulus = material.shear * material.rotationStiffness;
+		std::vector<TriangleProperties> all;
+		for (std::size_t i = begin; i < end; i++) {
+			all.push_back(properties);
+			all.back().area = system.topology.reference(i).area();
+		}
+		group->start(all);
+		system.group.emplace_back(std::move(group));
+		begin = end;
+	}
+	system.build();
+}
+
 /// Elastic system of one group, at rest and without stress.
 inline TriangleSystem makeSystem(const Mesh& mesh, const Material& material, RotationTreatment rotation)
 {
 	TriangleSystem    system;
 	const std::size_t n = mesh.triangle.size();
 	system.rotation     = rotation;
-	system.node.resize(mesh.node.size());
-	system.core.resize(n);
-	if (rotation == RotationTreatment::Cosserat) system.spin.resize(n);
-	system.fractureEnergy.assign(n, 0.);
+	system.motion.node.resize(mesh.node.size());
+	system.motion.core.resize(n);
+	if (rotation == RotationTreatment::Cosserat) system.motion.spin.resize(n);
 	for (std::size_t i = 0; i < n; i++) {
 		const Vertices   corners   = mesh.corners(i);
 		const auto       reference = makeReference(corners);
 		const LumpedMass mass      = material.mass(reference, rotation);
 		const Point      centre    = centroid(corners);
-		system.addTriangle(mesh.triangle[i], reference);
-		system.core.position[2 * i]     = centre.x;
-		system.core.position[2 * i + 1] = centre.y;
-		system.core.mass[i]             = mass.core;
+		system.topology.addTriangle(mesh.triangle[i], reference);
+		system.motion.core.position[2 * i]     = centre.x;
+		system.motion.core.position[2 * i + 1] = centre.y;
+		system.motion.core.mass[i]             = mass.core;
 		for (const std::int32_t v : mesh.triangle[i])
-			system.node.mass[std::size_t(v)] += mass.vertex;
+			system.motion.node.mass[std::size_t(v)] += mass.vertex;
 		if (rotation == RotationTreatment::Cosserat) {
-			system.spin.inertia[i]        = mass.inertia;
-			system.spin.inverseInertia[i] = 1 / mass.inertia;
+			system.motion.spin.inertia[i]        = mass.inertia;
+			system.motion.spin.inverseInertia[i] = 1 / mass.inertia;
 		}
 	}
 	for (std::size_t v = 0; v < mesh.node.size(); v++) {
-		system.node.position[2 * v]     = mesh.node[v].x;
-		system.node.position[2 * v + 1] = mesh.node[v].y;
+		system.motion.node.position[2 * v]     = mesh.node[v].x;
+		system.motion.node.position[2 * v + 1] = mesh.node[v].y;
 	}
-	for (Points* points : { &system.node, &system.core })
+	for (Points* points : { &system.motion.node, &system.motion.core })
 		for (std::size_t i = 0; i < points->inverseMass.size(); i++)
 			points->inverseMass[i] = 1 / points->mass[i / 2];
-	TriangleGroup group;
-	group.end             = n;
-	group.lambda          = material.lambda();
-	group.mu              = material.shear;
-	group.rotationModulus = material.shear * material.rotationStiffness;
-	group.thickness       = material.thickness;
-	system.group          = { group };
-	system.build();
+	setGroups<Elastic>(system, material, ElasticParameters(), 0, { n });
 	return system;
 }
 
-/// Turns an elastic system into one of undamaged concrete with the given mask of ConcreteEffects.
+/// Turns a system of one group into one of undamaged concrete with the given mask of ConcreteEffects.
 inline void makeConcrete(TriangleSystem& system, const ConcreteParameters& parameters, unsigned effects)
 {
-	system.concrete = { ConcreteGroupLaw { PreparedConcrete(parameters), effects } };
-	system.concreteState.assign(3 * system.triangles(), ConcreteState {});
-	system.fractureEnergy.assign(system.triangles(), parameters.fractureEnergy);
-	for (TriangleGroup& g : system.group) {
-		g.law        = TriangleGroup::Law::Concrete;
-		g.firstState = 3 * g.begin;
-	}
-	system.build();
+	setGroups<ConcreteDamage>(system, Material(), parameters, effects, { system.triangles() });
 }
 
 /// Largest step [s] that the bound over all elements allows.
@@ -186,10 +207,10 @@ inline double criticalStep(const Mesh& mesh, const Material& material, RotationT
 inline void agitate(TriangleSystem& system, double speed, double spin, std::uint64_t seed)
 {
 	Random random(seed);
-	for (auto* velocity : { &system.node.velocity, &system.core.velocity })
+	for (auto* velocity : { &system.motion.node.velocity, &system.motion.core.velocity })
 		for (double& v : *velocity)
 			v = random.uniform(-speed, speed);
-	for (double& w : system.spin.velocity)
+	for (double& w : system.motion.spin.velocity)
 		w = random.uniform(-spin, spin);
 }
 
@@ -209,7 +230,7 @@ inline StepEnergy run(TriangleSystem& system, const StepSettings& settings, int 
 	return last;
 }
 
-inline double largest(const std::vector<double>& values)
+template <class List> inline double largest(const List& values)
 {
 	double result = 0;
 	for (const double v : values)
@@ -217,7 +238,7 @@ inline double largest(const std::vector<double>& values)
 	return result;
 }
 
-inline double largestDifference(const std::vector<double>& a, const std::vector<double>& b)
+template <class List> inline double largestDifference(const List& a, const List& b)
 {
 	double result = a.size() == b.size() ? 0 : INFINITY;
 	for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++)

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
 // What a step of the concrete law costs per sub-element (items per second, its inverse as time), for every combination of effects.
-#include <pkg/ddem/kernel/laws/ConcreteBlock.hpp>
+#include <pkg/ddem/kernel/laws/concrete/ConcreteLaw.hpp>
 
 #include <benchmark/benchmark.h>
 

@@ -164,7 +164,7 @@ TEST(ConcreteStep, preExistingDamageSoftensAcrossTheDefect)
 TEST(ConcreteEnergy, closesToRoundOffInEveryStep) // ½(σ_old + σ_new):dε = d(stored) + d(plastic) + d(damage)
 {
 	Random random(17);
-	for (const unsigned effects : { 16u, 17u, 20u, 21u, 23u, 24u, 25u, 28u, 29u, 31u })
+	for (const unsigned effects : { 1u, 3u, 9u, 11u, 15u, 17u, 19u, 25u, 27u, 31u })
 		for (int i = 0; i < 20; ++i) {
 			const RandomPath path(random, 5e-3, i % 2 == 0);
 			ConcreteState    state {};

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
 // Parameters of concrete: the tables, every bad value, powers.
-#include <pkg/ddem/kernel/laws/ConcreteParameters.hpp>
+#include <pkg/ddem/kernel/laws/concrete/ConcreteParameters.hpp>
 
 #include <gtest/gtest.h>
 

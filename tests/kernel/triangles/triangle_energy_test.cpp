@@ -67,20 +67,20 @@ TEST_P(TriangleEnergy, closesWithEveryEffect) // prescribed and released degrees
 	const double   strain = 1e-4;
 	TriangleSystem system = agitated(strain);
 	Random         random(46);
-	for (Points* points : { &system.node, &system.core })
+	for (Points* points : { &system.motion.node, &system.motion.core })
 		for (std::size_t i = 0; i < 2 * points->size(); i++)
 			points->external.push_back(random.uniform(-1e4, 1e4));
-	for (std::size_t i = 0; i < system.spin.size(); i++)
-		system.spin.external.push_back(random.uniform(-1e2, 1e2));
+	for (std::size_t i = 0; i < system.motion.spin.size(); i++)
+		system.motion.spin.external.push_back(random.uniform(-1e2, 1e2));
 	const auto block = [&](std::size_t row, bool blocked) {
 		for (std::size_t i = 12 * row; i < 12 * (row + 1); i++)
-			system.node.inverseMass[i] = blocked ? 0 : 1 / system.node.mass[i / 2];
-		system.collectConstraints();
+			system.motion.node.inverseMass[i] = blocked ? 0 : 1 / system.motion.node.mass[i / 2];
+		system.motion.collectConstraints();
 	};
 	block(0, true); // 6 nodes, x and y
-	system.core.inverseMass[41] = 0;
-	if (system.spin.size()) system.spin.inverseInertia[20] = 0;
-	system.collectConstraints();
+	system.motion.core.inverseMass[41] = 0;
+	if (system.motion.spin.size()) system.motion.spin.inverseInertia[20] = 0;
+	system.motion.collectConstraints();
 	StepSettings settings = stepOf(dt, true);
 	settings.external     = true;
 	settings.gravity      = { 2e3, -1e4 };
@@ -92,10 +92,10 @@ TEST_P(TriangleEnergy, closesWithEveryEffect) // prescribed and released degrees
 		if (i == 500) block(0, false);
 		if (i < 500)
 			for (std::size_t j = 0; j < 12; j++)
-				system.node.velocity[j] = 0.5 * std::sin(0.02 * i + double(j));
-		system.core.velocity[41] = 0.3 * std::sin(0.05 * i);
-		if (system.spin.size()) system.spin.velocity[20] = 10 * std::sin(0.03 * i);
-		for (double& f : system.node.external)
+				system.motion.node.velocity[j] = 0.5 * std::sin(0.02 * i + double(j));
+		system.motion.core.velocity[41] = 0.3 * std::sin(0.05 * i);
+		if (system.motion.spin.size()) system.motion.spin.velocity[20] = 10 * std::sin(0.03 * i);
+		for (double& f : system.motion.node.external)
 			f += random.uniform(-1e3, 1e3);
 		const StepEnergy e = system.step(settings);
 		book.add(e);
@@ -114,11 +114,11 @@ TEST_P(TriangleEnergy, equalsTheWorkOfASlowCompression) // platen pushed in by Î
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
 	const auto     nodes  = mesh.node.size();
 	for (std::size_t v = 0; v < 6; v++) {
-		system.node.inverseMass[2 * v + 1]               = 0;
-		system.node.inverseMass[2 * (nodes - 6 + v) + 1] = 0;
+		system.motion.node.inverseMass[2 * v + 1]               = 0;
+		system.motion.node.inverseMass[2 * (nodes - 6 + v) + 1] = 0;
 	}
-	system.node.inverseMass[0] = 0;
-	system.collectConstraints();
+	system.motion.node.inverseMass[0] = 0;
+	system.motion.collectConstraints();
 	StepSettings settings = stepOf(dt, true);
 	settings.damping      = 0.3;
 	const int    steps    = 4000;
@@ -128,7 +128,7 @@ TEST_P(TriangleEnergy, equalsTheWorkOfASlowCompression) // platen pushed in by Î
 	StepEnergy   last;
 	for (int i = 0; i <= 2 * steps; i++) {
 		for (std::size_t v = nodes - 6; v < nodes; v++)
-			system.node.velocity[2 * v + 1] = i < steps ? -depth / (steps * dt) : 0;
+			system.motion.node.velocity[2 * v + 1] = i < steps ? -depth / (steps * dt) : 0;
 		last = system.step(settings);
 		book.add(last);
 		work += last.externalWork;
@@ -136,7 +136,7 @@ TEST_P(TriangleEnergy, equalsTheWorkOfASlowCompression) // platen pushed in by Î
 	}
 	double force = 0;
 	for (std::size_t v = nodes - 6; v < nodes; v++)
-		force += system.node.force[2 * v + 1];
+		force += system.motion.node.force[2 * v + 1];
 	EXPECT_NEAR(last.elastic + last.rotation, 0.5 * force * depth, 1e-3 * last.elastic);
 	EXPECT_NEAR(last.elastic + last.rotation + last.kinetic + damped, work, 1e-3 * work);
 	EXPECT_GT(work, 0);
@@ -153,8 +153,8 @@ TEST_P(TriangleEnergy, doesNotChangeTheMotion)
 	run(without, settings, 200);
 	settings.energy = true;
 	run(with, settings, 200);
-	EXPECT_LT(largestDifference(with.node.position, without.node.position), 1e-15);
-	EXPECT_LT(largestDifference(with.spin.angle, without.spin.angle), 1e-12);
+	EXPECT_LT(largestDifference(with.motion.node.position, without.motion.node.position), 1e-15);
+	EXPECT_LT(largestDifference(with.motion.spin.angle, without.motion.spin.angle), 1e-12);
 }
 
 TEST_P(TriangleEnergy, isLeftAtZeroWhenNotAskedFor)
@@ -168,9 +168,9 @@ TEST_P(TriangleEnergy, bookGoesOnAfterASave)
 {
 	const auto prepared = [&] {
 		TriangleSystem system      = agitated(1e-4);
-		system.node.inverseMass[0] = 0;
-		system.node.velocity[0]    = 0.7;
-		system.collectConstraints();
+		system.motion.node.inverseMass[0] = 0;
+		system.motion.node.velocity[0]    = 0.7;
+		system.motion.collectConstraints();
 		return system;
 	};
 	StepSettings settings = stepOf(dt, true);
@@ -179,17 +179,17 @@ TEST_P(TriangleEnergy, bookGoesOnAfterASave)
 	TriangleSystem whole = prepared(), first = prepared(), second = prepared();
 	run(whole, settings, 50);
 	run(first, settings, 50);
-	second.node = first.node;
-	second.core = first.core;
-	second.spin = first.spin;
-	second.setBook(first.book());
+	second.motion.node = first.motion.node;
+	second.motion.core = first.motion.core;
+	second.motion.spin = first.motion.spin;
+	second.motion.setBook(first.motion.book());
 	const StepEnergy expected = whole.step(settings), got = second.step(settings);
 	EXPECT_EQ(got.externalWork, expected.externalWork);
 	EXPECT_EQ(got.gravityWork, expected.gravityWork);
 	EXPECT_EQ(got.dampingLoss, expected.dampingLoss);
 	EXPECT_EQ(got.elastic, expected.elastic);
 	EXPECT_NE(expected.externalWork, 0);
-	EXPECT_THROW(second.setBook(TriangleSystem::Book()), std::logic_error);
+	EXPECT_THROW(second.motion.setBook(Motion::Book()), std::logic_error);
 }
 
 } // namespace

@@ -2,7 +2,6 @@
 // Element loops: SIMD against scalar, tails, and results that depend neither on threads nor on any order.
 #include "../TriangleSamples.hpp"
 
-#include <pkg/ddem/kernel/triangles/ElementLoops.hpp>
 
 #include <gtest/gtest.h>
 
@@ -21,7 +20,6 @@ struct LooseElements {
 
 	std::vector<std::int32_t> vertex[3];
 	std::vector<double>       arm[4], nodePosition, corePosition, coreAngle, cornerForce, coreForce, coreMoment;
-	TriangleGroup             group;
 	Material                  material;
 
 	explicit LooseElements(std::size_t n)
@@ -30,11 +28,6 @@ struct LooseElements {
 	        , coreMoment(n, untouched)
 	{
 		Random random(51);
-		group.end             = n;
-		group.lambda          = material.lambda();
-		group.mu              = material.shear;
-		group.rotationModulus = material.shear * material.rotationStiffness;
-		group.thickness       = material.thickness;
 		std::vector<std::int32_t> places(3 * n); // nodes in random order in memory
 		std::iota(places.begin(), places.end(), 0);
 		random.shuffle(places);
@@ -63,7 +56,7 @@ struct LooseElements {
 	}
 	std::size_t size() const { return coreAngle.size(); }
 
-	StepEnergy apply(ElementLoop loop, std::size_t begin, std::size_t end)
+	ElementArrays arrays()
 	{
 		ElementArrays a {};
 		for (std::size_t e = 0; e < 3; e++) {
@@ -77,8 +70,25 @@ struct LooseElements {
 		a.coreAngle    = coreAngle.data();
 		a.coreForce    = coreForce.data();
 		a.coreMoment   = coreMoment.data();
+		return a;
+	}
+	/// Forces of an elastic group [begin, end).
+	StepEnergy apply(RotationTreatment rotation, bool widest, bool energy, std::size_t begin, std::size_t end)
+	{
+		ElasticParameters parameters;
+		parameters.bulk                  = material.bulk;
+		parameters.shear                 = material.shear;
+		const auto group                 = makeGroup<Elastic>(parameters, 0);
+		group->begin                     = begin;
+		group->end                       = end;
+		group->constants.thickness       = material.thickness;
+		group->constants.rotationModulus = material.shear * material.rotationStiffness;
+		group->start(std::vector<TriangleProperties>(end - begin));
+		group->keepBook(energy, [](std::size_t) { return std::array<PlaneTensor, 3> {}; });
+		group->prepare(rotation, widest);
 		StepEnergy sum;
-		loop(a, group, begin, end, sum);
+		for (std::size_t t = 0; t < group->tiles(); t++)
+			group->advance(t, arrays(), 1e-6, sum);
 		return sum;
 	}
 	/// All outputs of element i: three corner forces, core force, moment.
@@ -109,14 +119,14 @@ template <class Frame> std::array<double, 9> byFunctions(const LooseElements& al
 	const auto                strain = subElementStrains(reference, du);
 	SubElementTensors<double> stress;
 	for (std::size_t k = 0; k < 3; k++) {
-		stress[k] = elasticStress(strain[k], all.group.lambda, all.group.mu);
-		elastic += all.group.thickness * reference.area() / 3 * energyDensity(stress[k], strain[k]);
+		stress[k] = elasticStress(strain[k], all.material.lambda(), all.material.shear);
+		elastic += all.material.thickness * reference.area() / 3 * energyDensity(stress[k], strain[k]);
 	}
-	auto q = stressForces(reference, stress, all.group.thickness);
+	auto q = stressForces(reference, stress, all.material.thickness);
 	if (Frame::coreRotates) {
 		const double turn = rotationStrain(reference, du);
-		addRotationForces(reference, all.group.rotationModulus * turn, all.group.thickness, q);
-		rotational += 0.5 * all.group.thickness * reference.area() * all.group.rotationModulus * turn * turn;
+		addRotationForces(reference, (all.material.shear * all.material.rotationStiffness) * turn, all.material.thickness, q);
+		rotational += 0.5 * all.material.thickness * reference.area() * (all.material.shear * all.material.rotationStiffness) * turn * turn;
 	}
 	const auto f = Frame::distribute(reference, fromCentre, frame, du, q);
 	return { f.vertex[0].x, f.vertex[0].y, f.vertex[1].x,
@@ -134,24 +144,17 @@ protected:
 			default: return byFunctions<FrameCosserat>(all, i, elastic, rotational);
 		}
 	}
-	/// The loops this processor can run.
-	std::vector<ElementLoop> loops(bool energy) const
-	{
-		std::vector<ElementLoop> all = { selectElasticLoopBaseline(GetParam(), energy) };
-		if (const ElementLoop wide = selectElasticLoopAvx2(GetParam(), energy)) all.push_back(wide);
-		return all;
-	}
 };
 INSTANTIATE_TEST_SUITE_P(, ElementLoops, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
 
 TEST_P(ElementLoops, agreeWithTheElementFunctionsInAnyPartOfAGroup) // SIMD width 4: every length and every start of a tail
 {
 	for (const bool energy : { false, true })
-		for (const ElementLoop loop : loops(energy))
+		for (const bool widest : { false, true })
 			for (std::size_t begin = 0; begin < 5; begin++)
 				for (std::size_t end = begin; end < begin + 14; end++) {
 					LooseElements    elements(20);
-					const StepEnergy sum     = elements.apply(loop, begin, end);
+					const StepEnergy sum     = elements.apply(GetParam(), widest, energy, begin, end);
 					double           elastic = 0, rotational = 0;
 					for (std::size_t i = 0; i < elements.size(); i++) {
 						const auto got = elements.outputs(i);
@@ -173,30 +176,36 @@ TEST_P(ElementLoops, agreeWithTheElementFunctionsInAnyPartOfAGroup) // SIMD widt
 				}
 }
 
-TEST_P(ElementLoops, widestLoopIsChosen)
+template <class Frame> void expectWidest(RotationTreatment rotation)
 {
-	for (const bool energy : { false, true }) {
-		const ElementLoop wide = selectElasticLoopAvx2(GetParam(), energy);
-		EXPECT_EQ(selectElementLoop(TriangleGroup::Law::Elastic, GetParam(), energy), wide ? wide : selectElasticLoopBaseline(GetParam(), energy));
+	for (const unsigned effects : { 0u, unsigned(LawEffects::Energy) }) {
+		const auto wide = LawLoops<Elastic, Frame, Avx2>::select(effects), baseline = LawLoops<Elastic, Frame, Baseline>::select(effects);
+		EXPECT_EQ(selectTileLoop<Elastic>(effects, rotation), processorHasAvx2() && wide ? wide : baseline);
+		EXPECT_EQ(selectTileLoop<Elastic>(effects, rotation, false), baseline);
+		EXPECT_NE(wide, baseline);
 	}
-#if defined(__x86_64__)
-	EXPECT_EQ(selectElasticLoopAvx2(GetParam(), false) != nullptr, __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"));
-#endif
+}
+
+TEST(ElementLoopChoice, takesTheWidestThatTheProcessorHas)
+{
+	expectWidest<FrameNone>(RotationTreatment::None);
+	expectWidest<FrameCorotational>(RotationTreatment::Corotational);
+	expectWidest<FrameCosserat>(RotationTreatment::Cosserat);
 }
 
 /// Everything that a step changes.
 std::vector<double> stateOf(const TriangleSystem& s)
 {
 	std::vector<double> all;
-	for (const auto* part : { &s.node.position,
-	                          &s.node.velocity,
-	                          &s.node.force,
-	                          &s.core.position,
-	                          &s.core.velocity,
-	                          &s.core.force,
-	                          &s.spin.angle,
-	                          &s.spin.velocity,
-	                          &s.spin.moment })
+	for (const auto* part : { &s.motion.node.position,
+	                          &s.motion.node.velocity,
+	                          &s.motion.node.force,
+	                          &s.motion.core.position,
+	                          &s.motion.core.velocity,
+	                          &s.motion.core.force,
+	                          &s.motion.spin.angle,
+	                          &s.motion.spin.velocity,
+	                          &s.motion.spin.moment })
 		all.insert(all.end(), part->begin(), part->end());
 	return all;
 }
@@ -236,13 +245,13 @@ Outcome motionOf(const Mesh& mesh, const std::vector<Point>& nodeVelocity, Rotat
 {
 	TriangleSystem system = makeSystem(mesh, Material(), rotation);
 	for (std::size_t v = 0; v < mesh.node.size(); v++) {
-		system.node.velocity[2 * v]     = nodeVelocity[v].x;
-		system.node.velocity[2 * v + 1] = nodeVelocity[v].y;
+		system.motion.node.velocity[2 * v]     = nodeVelocity[v].x;
+		system.motion.node.velocity[2 * v + 1] = nodeVelocity[v].y;
 	}
 	run(system, stepOf(1e-7), 300);
 	Outcome result;
 	for (std::size_t v = 0; v < mesh.node.size(); v++)
-		result.node.push_back({ system.node.position[2 * v], system.node.position[2 * v + 1] });
+		result.node.push_back({ system.motion.node.position[2 * v], system.motion.node.position[2 * v + 1] });
 	for (std::size_t i = 0; i < mesh.triangle.size(); i++)
 		result.angle.push_back(system.frameAngle(i));
 	return result;
@@ -332,26 +341,12 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 	const Mesh     mesh  = rectangle(20, 15, 0.2, 0.15, 0.25, 12); // 600 triangles
 	TriangleSystem whole = makeSystem(mesh, Material(), GetParam());
 	agitate(whole, 20, 1000, 55);
-	TriangleSystem    cut    = whole;
-	const std::size_t ends[] = { 1, 258, 258, 590, 600 }; // a group of one, one longer than a piece, an empty one, odd lengths
-	std::size_t       begin  = 0;
-	cut.group.clear();
-	ConcreteParameters parameters;
-	parameters.bulk  = Material().bulk;
-	parameters.shear = Material().shear;
-	cut.concrete     = { ConcreteGroupLaw { PreparedConcrete(parameters), 0 } };
-	for (const std::size_t end : ends) {
-		TriangleGroup g = whole.group[0];
-		g.begin         = begin;
-		g.end           = end;
-		if (cut.group.size() % 2) {
-			g.law        = TriangleGroup::Law::Concrete;
-			g.firstState = cut.concreteState.size();
-			cut.concreteState.resize(g.firstState + 3 * (end - begin));
-		}
-		cut.group.push_back(g);
-		begin = end;
-	}
+	const std::size_t ends[] = { 1, 258, 258, 590, 600 }; // a group of one, one longer than a tile, an empty one, odd lengths
+	TriangleSystem cut = whole, concrete = whole;
+	setGroups<Elastic>(cut, Material(), ElasticParameters(), 0, { std::begin(ends), std::end(ends) });
+	setGroups<ConcreteDamage>(concrete, Material(), ConcreteParameters(), 0, { std::begin(ends), std::end(ends) });
+	for (std::size_t g = 1; g < cut.group.size(); g += 2)
+		cut.group[g] = concrete.group[g];
 	cut.build();
 	const StepSettings settings = stepOf(0.5 * criticalStep(mesh, Material(), GetParam()), true);
 	for (int i = 0; i < 50; i++) {
@@ -360,17 +355,12 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 		EXPECT_NEAR(a.rotation, b.rotation, 1e-11 * a.kinetic);
 		EXPECT_NEAR(a.kinetic, b.kinetic, 1e-11 * a.kinetic);
 	}
-	EXPECT_LT(largestDifference(whole.node.position, cut.node.position), 1e-14);
-	EXPECT_LT(largestDifference(whole.core.position, cut.core.position), 1e-14);
-	EXPECT_LT(largestDifference(whole.spin.angle, cut.spin.angle), 1e-12);
-	// `whole` shows the stress of its current positions, concrete that of its last step: step once more to compare
-	TriangleSystem now = whole;
-	cut.step(settings);
+	// where groups are cut does not change a bit
+	EXPECT_EQ(stateOf(whole), stateOf(cut));
 	for (const std::size_t i :
 	     { std::size_t(0), std::size_t(1), std::size_t(257), std::size_t(258), std::size_t(589), std::size_t(590), std::size_t(599) }) {
-		EXPECT_EQ(&cut.groupOf(i), &cut.group[i < 1 ? 0 : i < 258 ? 1 : i < 590 ? 3 : 4]);
-		if (cut.groupOf(i).law != TriangleGroup::Law::Concrete) continue;
-		const auto   wanted = now.stress(i), got = cut.stress(i);
+		EXPECT_EQ(&cut.groupOf(i), &*cut.group[i < 1 ? 0 : i < 258 ? 1 : i < 590 ? 3 : 4]);
+		const auto   wanted = whole.stress(i), got = cut.stress(i);
 		const double roundOff = 0.1; // [Pa] of 1e8
 		for (std::size_t k = 0; k < 3; k++) {
 			EXPECT_NEAR(got[k].xx, wanted[k].xx, roundOff);
@@ -385,21 +375,44 @@ TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow,
 {
 	const Mesh     mesh   = rectangle(10, 15, 0.1, 0.15, 0.25, 14); // 300 triangles
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
-	makeConcrete(system, ConcreteParameters(), ConcreteEffects::All & ~unsigned(ConcreteEffects::Energy)); // the step adds Energy
-	const TriangleGroup all = system.group[0];
-	system.group[0].end     = 7; // an odd start of the second group
-	system.group.push_back(all);
-	system.group[1].begin      = 7;
-	system.group[1].firstState = 21;
-	Random random(56);
-	for (double& energy : system.fractureEnergy)
-		energy *= random.uniform(0.2, 2);
+	setGroups<ConcreteDamage>(system, Material(), ConcreteParameters(), ConcreteEffects::All, { 7, 300 }); // an odd start of the second
+	Random              random(56);
+	std::vector<double> fractureEnergy;
+	for (auto& g : system.group) {
+		std::vector<TriangleProperties> all(g->triangles());
+		for (auto& properties : all) {
+			properties.fractureEnergy = random.uniform(0.2, 2) * ConcreteParameters().fractureEnergy;
+			fractureEnergy.push_back(properties.fractureEnergy);
+		}
+		g->start(all);
+	}
 	agitate(system, 20, 1000, 57);
 	system.build();
-	const StepSettings   settings = stepOf(0.4 * criticalStep(mesh, Material(), GetParam()), true);
-	const ConcreteUpdate one      = concreteUpdate(ConcreteEffects::All);
-	const double         volume   = 0.1 * 0.15;
-	double               plastic = 0, damage = 0;
+	const StepSettings settings = stepOf(0.4 * criticalStep(mesh, Material(), GetParam()), true);
+	using State                 = ConcreteState;
+	const auto stateIn          = [](const TriangleSystem& s, std::size_t i, std::size_t k) {
+                const LawGroup& g = s.groupOf(i);
+                State           state {};
+                const auto      read = [&](const char* name, double* to) {
+                        const StateField* f = g.field(name);
+                        if (f) g.get(*f, i - g.begin, k, to);
+                };
+                double strain[3] = {};
+                read("strain", strain);
+                state.strain = { strain[0], strain[1], 0, strain[2] };
+                read("plasticStrain", &state.plasticStrain.xx);
+                read("damageTensor", &state.damage.xx);
+                read("lastStress", &state.stress.xx);
+                read("closure", &state.closure);
+                read("stiffening", &state.stiffening);
+                read("plasticDissipation", &state.plasticDissipation);
+                read("damageDissipation", &state.damageDissipation);
+                read("stiffeningEnergy", &state.stiffeningEnergy);
+                return state;
+	};
+	const PreparedConcrete law;
+	const double           volume  = 0.1 * 0.15;
+	double                 plastic = 0, damage = 0;
 	for (int step = 0; step < 100; step++) {
 		const TriangleSystem before = system;
 		const StepEnergy     e      = system.step(settings);
@@ -408,9 +421,9 @@ TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow,
 		for (std::size_t i = 0; i < system.triangles(); i++) {
 			const auto strain = before.strain(i);
 			for (std::size_t k = 0; k < 3; k++) {
-				ConcreteState        wanted = before.concreteState[3 * i + k];
-				const ConcreteState& got    = system.concreteState[3 * i + k];
-				one(system.concrete[0].parameters, system.fractureEnergy[i], strain[k], settings.dt, wanted);
+				State       wanted = stateIn(before, i, k);
+				const State got    = stateIn(system, i, k);
+				advanceConcrete<ConcreteEffects::All>(law, FractureEnergyOf<double>(fractureEnergy[i]), strain[k], settings.dt, wanted);
 				const auto close = [&](const PlaneTensor& a, const PlaneTensor& b, double unit) {
 					return std::max({ std::abs(a.xx - b.xx), std::abs(a.yy - b.yy), std::abs(a.zz - b.zz), std::abs(a.xy - b.xy) })
 					        < 1e-7 * unit;
@@ -419,7 +432,7 @@ TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow,
 				ASSERT_TRUE(close(got.plasticStrain, wanted.plasticStrain, 1e-3))
 				        << "step " << step << ", triangle " << i << ", sub-element " << k;
 				ASSERT_TRUE(close(got.damage, wanted.damage, 1)) << "step " << step << ", triangle " << i << ", sub-element " << k;
-				const double share = system.reference(i).area() / 3;
+				const double share = system.topology.reference(i).area() / 3;
 				stored += share * storedEnergy(got);
 				plastic += share * got.plasticDissipation;
 				damage += share * got.damageDissipation;

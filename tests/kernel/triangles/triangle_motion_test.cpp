@@ -17,7 +17,7 @@ struct Momentum {
 Momentum momentumOf(const TriangleSystem& s)
 {
 	Momentum p;
-	for (const Points* points : { &s.node, &s.core })
+	for (const Points* points : { &s.motion.node, &s.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++) {
 			const double m = points->mass[i];
 			const Point  x { points->position[2 * i], points->position[2 * i + 1] }, v { points->velocity[2 * i], points->velocity[2 * i + 1] };
@@ -27,8 +27,8 @@ Momentum momentumOf(const TriangleSystem& s)
 			p.size += m * std::hypot(v.x, v.y);
 			p.angularSize += m * std::hypot(x.x, x.y) * std::hypot(v.x, v.y);
 		}
-	for (std::size_t i = 0; i < s.spin.size(); i++)
-		p.angular += s.spin.inertia[i] * s.spin.velocity[i];
+	for (std::size_t i = 0; i < s.motion.spin.size(); i++)
+		p.angular += s.motion.spin.inertia[i] * s.motion.spin.velocity[i];
 	return p;
 }
 
@@ -65,7 +65,7 @@ TEST_P(TriangleMotion, conservesMomentumInFreeFlight)
 	const Mesh     mesh   = rectangle(5, 8, 0.05, 0.08, 0.25, 2);
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
 	agitate(system, 5, 500, 43); // strains of 1e-3
-	for (auto* velocity : { &system.node.velocity, &system.core.velocity })
+	for (auto* velocity : { &system.motion.node.velocity, &system.motion.core.velocity })
 		for (std::size_t i = 0; i < velocity->size(); i += 2)
 			(*velocity)[i] += 20;
 	const Momentum before = momentumOf(system);
@@ -86,12 +86,12 @@ TEST_P(TriangleMotion, fallsOnAParabola) // leapfrog from rest: x_n = g dt² n(n
 	const int    steps      = 1000;
 	const double fall       = settings.dt * settings.dt * steps * (steps + 1) / 2;
 	run(system, settings, steps);
-	for (const auto& [now, then] : { std::pair(&system.node, &start.node), { &system.core, &start.core } })
+	for (const auto& [now, then] : { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
 		for (std::size_t i = 0; i < now->size(); i++) {
 			EXPECT_NEAR(now->position[2 * i], then->position[2 * i] + 3e4 * fall, 1e-11 * 9e4 * fall);
 			EXPECT_NEAR(now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-11 * 9e4 * fall);
 		}
-	EXPECT_LT(largest(system.spin.angle), 1e-10);
+	EXPECT_LT(largest(system.motion.spin.angle), 1e-10);
 }
 
 TEST_P(TriangleMotion, fallsOnTheSameParabolaWithStepsThatChange) // from rest half a step early: x = g t (t + dt_0)/2 exactly
@@ -113,7 +113,7 @@ TEST_P(TriangleMotion, fallsOnTheSameParabolaWithStepsThatChange) // from rest h
 		if (i < 999) time += settings.dt;
 	}
 	const double end  = time + settings.dt, fall = 0.5 * end * (end + first);
-	for (const auto& [now, then] : { std::pair(&system.node, &start.node), { &system.core, &start.core } })
+	for (const auto& [now, then] : { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
 		for (std::size_t i = 0; i < now->size(); i++)
 			EXPECT_NEAR(now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-10 * 9e4 * fall);
 	EXPECT_NEAR(gained, kinetic, 2e-3 * kinetic); // the leapfrog's product differs from ½ m v² by the square of one step in a thousand, and that only once
@@ -125,7 +125,7 @@ TEST_P(TriangleMotion, gainsTheImpulseOfForcesFromOutside)
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
 	Random         random(44);
 	double         x = 0, y = 0;
-	for (Points* points : { &system.node, &system.core }) {
+	for (Points* points : { &system.motion.node, &system.motion.core }) {
 		points->external.resize(2 * points->size());
 		for (std::size_t i = 0; i < points->size(); i++) {
 			x += points->external[2 * i]     = random.uniform(-1e4, 1e4);
@@ -148,25 +148,25 @@ TEST_P(TriangleMotion, blockedDegreesOfFreedomKeepTheirVelocity)
 {
 	const Mesh     mesh         = rectangle(3, 3, 0.03, 0.03, 0.25, 5);
 	TriangleSystem system       = makeSystem(mesh, Material(), GetParam());
-	system.node.inverseMass[6]  = 0;
-	system.node.velocity[6]     = 2.5;
-	system.core.inverseMass[11] = 0;
-	if (system.spin.size()) {
-		system.spin.inverseInertia[4] = 0;
-		system.spin.velocity[4]       = -30;
+	system.motion.node.inverseMass[6]  = 0;
+	system.motion.node.velocity[6]     = 2.5;
+	system.motion.core.inverseMass[11] = 0;
+	if (system.motion.spin.size()) {
+		system.motion.spin.inverseInertia[4] = 0;
+		system.motion.spin.velocity[4]       = -30;
 	}
-	const double start = system.node.position[6], core = system.core.position[11], dt = 0.5 * criticalStep(mesh, Material(), GetParam());
+	const double start = system.motion.node.position[6], core = system.motion.core.position[11], dt = 0.5 * criticalStep(mesh, Material(), GetParam());
 	StepSettings settings = stepOf(dt);
 	settings.gravity      = { 9.81, -9.81 };
 	settings.damping      = 0.3;
 	run(system, settings, 100);
-	EXPECT_EQ(system.node.velocity[6], 2.5);
-	EXPECT_NEAR(system.node.position[6], start + 2.5 * 100 * dt, 1e-15);
-	EXPECT_EQ(system.core.velocity[11], 0);
-	EXPECT_EQ(system.core.position[11], core);
-	if (system.spin.size()) {
-		EXPECT_EQ(system.spin.velocity[4], -30);
-		EXPECT_NEAR(system.spin.angle[4], -30 * 100 * dt, 1e-15);
+	EXPECT_EQ(system.motion.node.velocity[6], 2.5);
+	EXPECT_NEAR(system.motion.node.position[6], start + 2.5 * 100 * dt, 1e-15);
+	EXPECT_EQ(system.motion.core.velocity[11], 0);
+	EXPECT_EQ(system.motion.core.position[11], core);
+	if (system.motion.spin.size()) {
+		EXPECT_EQ(system.motion.spin.velocity[4], -30);
+		EXPECT_NEAR(system.motion.spin.angle[4], -30 * 100 * dt, 1e-15);
 	}
 }
 
@@ -178,14 +178,14 @@ TEST_P(TriangleMotion, dampingIsThatOfNewtonIntegrator) // cundallDamp2nd: a (1 
 	settings.gravity       = { 0, g };
 	settings.damping       = damping;
 	TriangleSystem falling = makeSystem(mesh, Material(), GetParam()), rising = falling;
-	for (auto* velocity : { &rising.node.velocity, &rising.core.velocity })
+	for (auto* velocity : { &rising.motion.node.velocity, &rising.motion.core.velocity })
 		for (std::size_t i = 1; i < velocity->size(); i += 2)
 			(*velocity)[i] = 100;
 	run(falling, settings, 100);
 	run(rising, settings, 100);
-	for (const double v : { falling.node.velocity[1], falling.core.velocity[1] })
+	for (const double v : { falling.motion.node.velocity[1], falling.motion.core.velocity[1] })
 		EXPECT_NEAR(v, 0.8 * g * 100 * dt, 1e-9);
-	for (const double v : { rising.node.velocity[1], rising.core.velocity[1] })
+	for (const double v : { rising.motion.node.velocity[1], rising.motion.core.velocity[1] })
 		EXPECT_NEAR(v, 100 + 1.2 * g * 100 * dt, 1e-9);
 }
 
@@ -193,28 +193,28 @@ TEST(CoreSpin, feelsMomentsFromOutside) // a moment on a core goes over to the w
 {
 	const Mesh     mesh     = rectangle(3, 3, 0.03, 0.03, 0.25, 7);
 	TriangleSystem system   = makeSystem(mesh, Material(), RotationTreatment::Cosserat);
-	system.spin.external    = std::vector<double>(system.spin.size(), 0.);
-	system.spin.external[7] = 3;
+	system.motion.spin.external    = std::vector<double>(system.motion.spin.size(), 0.);
+	system.motion.spin.external[7] = 3;
 	StepSettings settings   = stepOf(0.5 * criticalStep(mesh, Material(), RotationTreatment::Cosserat));
 	settings.external       = true;
 	run(system, settings, 500);
 	const Momentum now = momentumOf(system);
 	EXPECT_NEAR(now.angular, 3 * 500 * settings.dt, 1e-11 * (3 * 500 * settings.dt + now.angularSize));
-	EXPECT_GT(std::abs(now.angular), 100 * std::abs(system.spin.inertia[7] * system.spin.velocity[7]));
+	EXPECT_GT(std::abs(now.angular), 100 * std::abs(system.motion.spin.inertia[7] * system.motion.spin.velocity[7]));
 }
 
 /// A block that turns about its centre as a rigid body.
 TriangleSystem spinningBlock(const Mesh& mesh, double size, double speed, double dt, RotationTreatment rotation)
 {
 	TriangleSystem system = makeSystem(mesh, Material(), rotation);
-	for (Points* points : { &system.node, &system.core })
+	for (Points* points : { &system.motion.node, &system.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++) {
 			// velocities live half a step before positions, on the chord of the circle
 			const double x = points->position[2 * i] - size / 2, y = points->position[2 * i + 1] - size / 2, angle = speed * dt;
 			points->velocity[2 * i]     = (x * (1 - std::cos(angle)) - y * std::sin(angle)) / dt;
 			points->velocity[2 * i + 1] = (x * std::sin(angle) + y * (1 - std::cos(angle))) / dt;
 		}
-	for (double& w : system.spin.velocity)
+	for (double& w : system.motion.spin.velocity)
 		w = speed;
 	return system;
 }
@@ -232,9 +232,9 @@ TEST_P(TriangleMotion, rigidSpinThroughARadianAndAHalf)
 		system.step(stepOf(dt));
 		for (std::size_t t = 0; t < system.triangles(); t++)
 			for (const auto& stress : system.stress(t))
-				virial += (stress.xx + stress.yy) * system.reference(t).area() / 3 / steps;
+				virial += (stress.xx + stress.yy) * system.topology.reference(t).area() / 3 / steps;
 	}
-	for (const Points* points : { &start.node, &start.core })
+	for (const Points* points : { &start.motion.node, &start.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++)
 			inertia += points->mass[i] * (std::pow(points->position[2 * i] - size / 2, 2) + std::pow(points->position[2 * i + 1] - size / 2, 2));
 	double meanTurn = 0;

@@ -87,6 +87,45 @@ private:
 	/// From points 0, 2 and points 1, 3.
 	static PlaneVector<Batch> split(__m256d even, __m256d odd) { return { Batch(_mm256_unpacklo_pd(even, odd)), Batch(_mm256_unpackhi_pd(even, odd)) }; }
 };
+#else
+/// Lanes of the instructions that every processor of the architecture has, one after the other.
+template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
+	using Batch                        = xsimd::batch<double, Arch>;
+	static constexpr std::size_t width = Batch::size;
+	static Batch                 load(const double* from) { return Batch::load_unaligned(from); }
+	static void                  store(double* to, const Batch& value) { value.store_unaligned(to); }
+	static double                sum(const Batch& value) { return xsimd::reduce_add(value); }
+
+	static PlaneVector<Batch> loadPoints(const double* from)
+	{
+		return ofPoints([=](std::size_t lane) { return from + 2 * lane; });
+	}
+	static void storePoints(double* to, const PlaneVector<Batch>& value)
+	{
+		alignas(Batch) double x[width], y[width];
+		value.x.store_aligned(x);
+		value.y.store_aligned(y);
+		for (std::size_t lane = 0; lane < width; lane++) {
+			to[2 * lane]     = x[lane];
+			to[2 * lane + 1] = y[lane];
+		}
+	}
+	static PlaneVector<Batch> gatherPoints(const double* from, const std::int32_t* index)
+	{
+		return ofPoints([=](std::size_t lane) { return from + 2 * std::ptrdiff_t(index[lane]); });
+	}
+
+private:
+	template <class Place> static PlaneVector<Batch> ofPoints(const Place& place)
+	{
+		alignas(Batch) double x[width], y[width];
+		for (std::size_t lane = 0; lane < width; lane++) {
+			x[lane] = place(lane)[0];
+			y[lane] = place(lane)[1];
+		}
+		return { Batch::load_aligned(x), Batch::load_aligned(y) };
+	}
+};
 #endif
 
 } // namespace yade::ddem

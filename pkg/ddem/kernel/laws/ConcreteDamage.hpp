@@ -1,114 +1,119 @@
 // GPL v2 or later, see LICENSE.
-// Damage of concrete: damage parameter, strength, closing cracks and the degraded elasticity.
+// Concrete: viscoplastic Mohr-Coulomb flow, tensorial damage, equation of state (Zubelewicz 2018, section 3). Its parts are in concrete/.
 #pragma once
 
-#include <pkg/ddem/kernel/laws/ConcreteParameters.hpp>
-#include <pkg/ddem/kernel/laws/ElasticLaw.hpp>
-#include <pkg/ddem/kernel/algebra/PlaneTensor.hpp>
-
-#include <algorithm>
+#include <pkg/ddem/kernel/laws/concrete/ConcreteLaw.hpp>
+#include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 
 namespace yade::ddem {
 
-/// What a damage tensor Ω means. η_0 N_Ω = η_0 Ω/Ω_D needs no division by Ω_D and is defined, zero, where N_Ω is not.
-template <class Number> struct DamageMeasure {
-	PlaneTensorOf<Number> loss;      ///< η_0 N_Ω [-]
-	Number                integrity; ///< 1 − η_0 [-]
-};
+struct ConcreteDamage : LawDefaults {
+	static constexpr const char* name                  = "ConcreteDamage";
+	static constexpr unsigned    allEffects            = ConcreteEffects::All;
+	static constexpr bool        elasticWithoutEffects = true;
 
-/// G_f of a sub-element [J/m³]: while flow is spread over the material, and once it has localised in a band of one row of elements. They differ where a crack band
-/// is asked for: then the energy of a crack per area does not depend on the size of the elements (Bažant and Oh 1983), nor does the strength
-/// of what has its peak before, which the first rules.
-template <class Number> struct FractureEnergyOf {
-	Number spread, band;
-
-	FractureEnergyOf(const Number& both) // NOLINT: a number is meant to do for both
-	        : spread(both)
-	        , band(both)
+	/// Masks that do the same: without flow there is nothing that a rate could change.
+	static constexpr unsigned distinct(unsigned effects)
 	{
+		return effects & ConcreteEffects::Flow ? effects : effects & ~unsigned(ConcreteEffects::Rate);
 	}
-	FractureEnergyOf(const Number& first, const Number& second)
-	        : spread(first)
-	        , band(second)
+	static constexpr bool stiffens(unsigned effects) { return effects & ConcreteEffects::EquationOfState; }
+	static constexpr bool damages(unsigned effects) { return effects & ConcreteEffects::Damage; }
+
+	static const std::vector<LawEffect>& effects()
 	{
+		static const std::vector<LawEffect> all { CONCRETE_EFFECTS(DDEM_LAW_EFFECT) };
+		return all;
 	}
-};
 
-/// η_0 = (1 − r) Ω_D^n_f/(1 + Ω_D^n_f), Ω_D = √(Ω:Ω), with the residual r that keeps strength and stiffness above zero (r = 0 in Zubelewicz (2018)).
-template <class Number> inline DamageMeasure<Number> measureDamage(const PreparedConcrete& concrete, const PlaneTensorOf<Number>& damage)
-{
-	using std::sqrt;
-	const double residual = concrete.parameters.residual;
-	const Number square = doubleDot(damage, damage), size = sqrt(square);
-	if (concrete.damagePower.isTwo()) { // η_0/Ω_D = Ω_D/(1 + Ω_D²)
-		const Number intact = 1 / (1 + square);
-		return { ((1 - residual) * size * intact) * damage, residual + (1 - residual) * intact };
+	/// A rate exponent of 1 is no rate dependence.
+	static unsigned effective(const ConcreteParameters& p, unsigned effects)
+	{
+		return distinct(p.rateExponent == 1 ? effects & ~unsigned(ConcreteEffects::Rate) : effects);
 	}
-	const Number power = concrete.damagePower(size);
-	const Number ratio = (1 - residual) / (1 + 1 / power); // η_0; finite for powers that underflow or overflow
-	return { select(size > 0, ratio / size, Number(0)) * damage, residual + (1 - residual) / (1 + power) };
-}
 
-/// Share η_max ξ_c1 of η_0 that the stiffness loses [-]; `openness` from 0 (crack closed) to 1 (open)
-template <class Number> inline Number stiffnessEffect(const PreparedConcrete& concrete, const Number& openness)
-{
-	const ConcreteParameters& c = concrete.parameters;
-	return c.damageLimit * (c.closedEffect + (1 - c.closedEffect) * openness);
-}
+	using Parameters                     = ConcreteParameters;
+	using Prepared                       = PreparedConcrete;
+	template <class Number> using State  = ConcreteStateOf<Number>;
 
-/// Growth of Ω [-] when flow does the work σ_eq ė_eq dt [J/m³]: ½ M_c ξ_c0 σ_eq ė_eq dt/G_f, Zubelewicz (2018), eq. 8
-template <class Number>
-inline PlaneTensorOf<Number> damageGrowth(
-        const PreparedConcrete& concrete, const Number& fractureEnergy, const PlaneTensorOf<Number>& damageTensor, const Number& openness, const Number& work)
-{
-	const ConcreteParameters& c      = concrete.parameters;
-	const Number              effect = c.closedGrowth + (1 - c.closedGrowth) * openness;
-	const Number              energy = select(fractureEnergy > concrete.smallestEnergy, fractureEnergy, Number(concrete.smallestEnergy)); // also for NaN
-	return (0.5 * effect * work / energy) * damageTensor;
-}
+	template <unsigned effects, class S, class Visit> static void fields(S& s, Visit&& visit)
+	{
+		constexpr bool flows = effects & ConcreteEffects::Flow, damages = effects & ConcreteEffects::Damage;
+		if constexpr (flows || damages) {
+			visit.inPlane("strain", "-", s.strain);
+			visit.tensor("plasticStrain", "-", s.plasticStrain);
+		}
+		if constexpr (damages) {
+			visit.tensor("damageTensor", "-", s.damage);
+			visit.scalar("closure", "-", s.closure);
+		}
+		if constexpr (effects & ConcreteEffects::EquationOfState) visit.scalar("stiffening", "-", s.stiffening);
+		if constexpr (effects & ConcreteEffects::Energy) {
+			if constexpr (!flows && !damages) visit.inPlane("strain", "-", s.strain);
+			visit.tensor("lastStress", "Pa", s.stress);
+			visit.scalar("plasticDissipation", "J/m³", s.plasticDissipation);
+			visit.scalar("damageDissipation", "J/m³", s.damageDissipation);
+			visit.scalar("stiffeningEnergy", "J/m³", s.stiffeningEnergy);
+		}
+	}
 
-/// Degraded stress λ Δ (Δ:ε) + 2μ Δ.ε.Δ [Pa] with Δ = 1 − effect·loss: Zubelewicz (2018), section 3.
-template <class Number>
-inline PlaneTensorOf<Number>
-degradedStress(double lambda, double twoShear, const Number& effect, const PlaneTensorOf<Number>& loss, const PlaneTensorOf<Number>& strain)
-{
-	const PlaneTensorOf<Number> delta = { 1 - effect * loss.xx, 1 - effect * loss.yy, 1 - effect * loss.zz, -effect * loss.xy };
-	return (lambda * doubleDot(delta, strain)) * delta + twoShear * sandwich(delta, strain);
-}
-
-/// How open the crack is, from 0 (closed: σ_Ω < 0) to 1 (open: σ_Ω ≥ 0), σ_Ω = N_Ω:σ being the crack-normal stress: Zubelewicz (2018), section 3.
-/// σ_Ω depends on the openness itself, because an open crack is the softer one: under lateral stress both states may agree with their own σ_Ω, or neither, and
-/// a switch that looks at the stress of the step before then flips at every step. Here σ_Ω is the stress that the closed crack would carry. That makes the
-/// openness, and so the stress, a unique function of the elastic strain, and agrees with the definition wherever that has one answer.
-/// The openness falls linearly to 0 at σ_Ω = −closureBand: closing at once makes the shear stress jump.
-template <class Number>
-inline Number crackOpenness(const PreparedConcrete& concrete, const DamageMeasure<Number>& damage, const PlaneTensorOf<Number>& elasticStrain)
-{
-	using std::max;
-	const Number                closed = stiffnessEffect(concrete, Number(0));
-	const PlaneTensorOf<Number> stress = degradedStress(concrete.lambda, concrete.twoShear, closed, damage.loss, elasticStrain);
-	const Number                normal = doubleDot(damage.loss, stress), band = (1 - damage.integrity) * concrete.parameters.closureBand; // both times η_0
-	return select(normal >= 0, Number(1), max(Number(0), 1 + normal / band));
-}
-
-/// Share [-], at most 1, of the elastic strain that stays elastic when the stiffness changes because a crack closes or opens; the rest becomes permanent slip.
-/// The report's stiffness comes back at once when a crack closes, in all directions. At fixed elastic strain that would create the energy ½ ε:(C_now − C_before):ε
-/// in every closure, and a broken sample whose cracks chatter would feed on it without end. So a change of openness may lower the stored energy, never raise it:
-/// where it would rise, the elastic strain shrinks until it does not. Where only the crack-normal stress acts it is zero at closure, and nothing slips.
-template <class Number>
-inline Number keptElasticShare(
-        const PreparedConcrete&      concrete,
-        const DamageMeasure<Number>& damage,
-        const Number&                effectBefore,
-        const Number&                effectNow,
-        const PlaneTensorOf<Number>& elasticStrain)
-{
-	using std::sqrt;
-	const auto twiceEnergy = [&](const Number& effect) {
-		return doubleDot(degradedStress(concrete.lambda, concrete.twoShear, effect, damage.loss, elasticStrain), elasticStrain);
+	template <class Number> struct Properties {
+		Number fractureEnergy, bandFactor; ///< G_f [J/m³], and what a crack band multiplies it with once flow has localised [-]
 	};
-	const Number before = twiceEnergy(effectBefore), now = twiceEnergy(effectNow);
-	return select(now > before, sqrt(before / now), Number(1));
-}
+	template <unsigned effects, class P, class Visit> static void properties(P& own, Visit&& visit)
+	{
+		if constexpr ((effects & ConcreteEffects::Flow) && (effects & ConcreteEffects::Damage)) {
+			visit("fractureEnergy", "J/m³", own.fractureEnergy);
+			visit("bandFactor", "-", own.bandFactor);
+		}
+	}
+	static Properties<double> propertiesOf(const Prepared& law, const TriangleProperties& triangle)
+	{
+		return { triangle.fractureEnergy > 0 ? triangle.fractureEnergy : law.parameters.fractureEnergy, triangle.bandFactor };
+	}
+	static State<double> virgin(const Prepared&, const TriangleProperties& triangle)
+	{
+		State<double> s {};
+		s.damage = triangle.initialDamage;
+		return s;
+	}
+
+	/// The stress of the last step, which the book needs; and the strain, where only the book does.
+	template <unsigned effects> static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)
+	{
+		if constexpr (!(effects & (ConcreteEffects::Flow | ConcreteEffects::Damage))) s.strain = strain;
+		const PlaneTensor elastic = s.strain - s.plasticStrain;
+		PlaneTensor       stress  = elasticStress(law.lambda, law.twoShear, elastic);
+		if constexpr (effects & ConcreteEffects::Damage)
+			stress = degradedStress(
+			        law.lambda,
+			        law.twoShear,
+			        stiffnessEffect(law, 1 - s.closure),
+			        measureDamage(law, s.damage).loss,
+			        elastic);
+		s.stress = (1 + s.stiffening) * stress;
+	}
+
+	template <unsigned effects, class Number>
+	static PlaneTensorOf<Number> advance(
+	        const Prepared&              law,
+	        const Properties<Number>&    own,
+	        const PlaneTensorOf<Number>& strain,
+	        double                       dt,
+	        State<Number>&               s)
+	{
+		const FractureEnergyOf<Number> energy(own.fractureEnergy, own.fractureEnergy * own.bandFactor);
+		advanceConcrete<effects>(law, energy, strain, dt, s);
+		return s.stress;
+	}
+	template <unsigned effects, class Number>
+	static EnergyDensities<Number>
+	energies(const Prepared&, const PlaneTensorOf<Number>&, const PlaneTensorOf<Number>&, const State<Number>& s)
+	{
+		return { storedEnergy(s), s.plasticDissipation, s.damageDissipation };
+	}
+	static double damage(const Prepared& law, const Properties<double>&, const State<double>& s) { return damageRatio(law, s); }
+	static double stiffening(const Prepared& law, const State<double>& s) { return stiffnessFactor(law, s); }
+};
 
 } // namespace yade::ddem

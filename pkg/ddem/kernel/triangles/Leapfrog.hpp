@@ -2,7 +2,7 @@
 // Leapfrog motion of points and spins, with the effects a scene calls for picked at compile time.
 #pragma once
 
-#include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
+#include <pkg/ddem/kernel/triangles/Motion.hpp>
 
 namespace yade::ddem {
 
@@ -16,33 +16,12 @@ namespace MotionEffects {
 	}
 }
 
-/// Sums over a range of degrees of freedom; works are split into the half steps before and after the current positions.
-struct MotionSums {
-	double     speedSquared = 0; ///< not finite as soon as any velocity is not
-	StepEnergy before, after;    ///< before holds the kinetic energy as well
-
-	MotionSums& operator+=(const MotionSums& other)
-	{
-		speedSquared += other.speedSquared;
-		before += other.before;
-		after += other.after;
-		return *this;
-	}
-};
-
 /// Factor by which Cundall's local damping scales an acceleration, as in NewtonIntegrator (cundallDamp2nd).
 inline double localDamping(double damping, double acceleration, double velocity, double dt)
 {
 	const double power = acceleration * (velocity + 0.5 * dt * acceleration);
 	return power > 0 ? 1 - damping : (power < 0 ? 1 + damping : 1);
 }
-
-/// Time steps on both sides of the present positions. Velocities live half a step from them, so what accelerates acts for half of each.
-struct StepsAround {
-	double before, after; ///< [s]
-
-	double between() const { return 0.5 * (before + after); }
-};
 
 /// One degree of freedom: returns its new velocity and books its work. inverseMass 0 keeps the velocity.
 template <unsigned effects>

@@ -17,24 +17,9 @@ namespace {
 		double      stiffening; ///< √ of the factor on its moduli [-]
 	};
 
-	/// √ of the factor by which pressure raises the moduli of a triangle.
-	double stiffening(const TriangleSystem& system, const TriangleGroup& g, std::size_t i)
-	{
-		if (g.law != TriangleGroup::Law::Concrete) return 1;
-		const ConcreteGroupLaw& law = system.concrete[g.concrete];
-		if (!(law.effects & ConcreteEffects::EquationOfState)) return 1;
-		const ConcreteState* state    = &system.concreteState[TriangleSystem::stateIndex(g, i)];
-		double               stiffest = 1;
-		for (int k = 0; k < 3; k++)
-			stiffest = std::max(stiffest, stiffnessFactor(law.parameters, state[k]));
-		return std::sqrt(stiffest);
-	}
-
-	TriangleStiffness stiffnessOf(const TriangleGroup& g) { return { g.lambda + 2. / 3 * g.mu, g.mu, g.rotationModulus / g.mu }; }
-
 	LumpedMass massOf(const TriangleSystem& system, double vertexShare, std::size_t i)
 	{
-		return { system.core.mass[i] * vertexShare / (3 * (1 - vertexShare)), system.core.mass[i], system.spin.size() ? system.spin.inertia[i] : 0 };
+		return { system.motion.core.mass[i] * vertexShare / (3 * (1 - vertexShare)), system.motion.core.mass[i], system.motion.spin.size() ? system.motion.spin.inertia[i] : 0 };
 	}
 
 } // namespace
@@ -45,16 +30,17 @@ SystemStableStep stableStep(const TriangleSystem& system, const std::vector<doub
 		double frequency, stiffening;
 	};
 	std::vector<Growth> growth(system.triangles());
-	for (const TriangleGroup& g : system.group) {
-		const TriangleStiffness stiffness = stiffnessOf(g);
+	for (const GroupPointer& pointer : system.group) {
+		const LawGroup&         g         = *pointer;
+		const TriangleStiffness stiffness = g.stiffness();
 #pragma omp parallel for schedule(static)
 		for (std::ptrdiff_t j = std::ptrdiff_t(g.begin); j < std::ptrdiff_t(g.end); j++) {
 			const auto i        = std::size_t(j);
 			growth[i].frequency = system.rotation == RotationTreatment::None
 			        ? 0
 			        : frequencyGrowth(
-			                system.reference(i), stiffness, g.thickness, massOf(system, vertexShare, i), system.rotation, system.relativeDisplacements(i));
-			growth[i].stiffening = stiffening(system, g, i);
+			                system.topology.reference(i), stiffness, g.constants.thickness, massOf(system, vertexShare, i), system.rotation, system.relativeDisplacements(i));
+			growth[i].stiffening = std::sqrt(g.stiffening(i - g.begin));
 		}
 	}
 	SystemStableStep       best;
@@ -70,11 +56,11 @@ SystemStableStep stableStep(const TriangleSystem& system, const std::vector<doub
 	std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.atLeast < b.atLeast; });
 	for (const Candidate& c : candidates) {
 		if (c.atLeast >= best.step) break;
-		const TriangleGroup& g   = system.groupOf(c.triangle);
+		const LawGroup& g   = system.groupOf(c.triangle);
 		const double         own = highestFrequency(
-                        system.reference(c.triangle),
-                        stiffnessOf(g),
-                        g.thickness,
+                        system.topology.reference(c.triangle),
+                        g.stiffness(),
+                        g.constants.thickness,
                         massOf(system, vertexShare, c.triangle),
                         system.rotation,
                         system.relativeDisplacements(c.triangle));

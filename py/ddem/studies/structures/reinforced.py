@@ -148,7 +148,8 @@ def run(
 	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, size, pattern=pattern, regions={"bar": BAR}, **({"seed": 1} if pattern == "unstructured" else {}))
 	block = ddem.append(mesh, {"": "concrete", "bar": "steel" if bar else "concrete"}, seed=seed, crack_band=crack_band)
 	platens = ddem.platens(block, velocity)
-	engine = DeformableEngine(rotation=rotation, label="deformable")
+	# crushed to zero bearing capacity and on: single triangles turn inside out then
+	engine = DeformableEngine(rotation=rotation, inverted="warn", label="deformable")
 	followers = [] if dt else [DeformableTimeStepper(safety=step)]  # triangles stretch to several times their size while they turn
 	O.engines = [ForceResetter(), *platens.engines, *followers, engine]
 	critical = engine.criticalTimeStep()

@@ -1,0 +1,169 @@
+// GPL v2 or later, see LICENSE.
+// A group of triangles that share one law, whatever it is.
+#pragma once
+
+#include <pkg/ddem/kernel/algebra/Parameters.hpp>
+#include <pkg/ddem/kernel/triangles/LawLoops.hpp>
+#include <pkg/ddem/kernel/triangles/StableStep.hpp>
+#include <pkg/ddem/kernel/triangles/StateColumns.hpp>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace yade::ddem {
+
+/// What a triangle may tell its law beside its strain.
+struct TriangleProperties {
+	double      area           = 0;  ///< reference area [m²]
+	double      fractureEnergy = -1; ///< of its own; negative: the material's, in the unit that its law says
+	double      bandFactor     = 1;  ///< of a crack band, on the fracture energy once flow has localised [-]
+	PlaneTensor initialDamage { 0, 0, 0, 0 };
+
+	TriangleProperties() = default;
+	TriangleProperties(double area_, double fractureEnergy_, double bandFactor_, const PlaneTensor& initialDamage_)
+	        : area(area_)
+	        , fractureEnergy(fractureEnergy_)
+	        , bandFactor(bandFactor_)
+	        , initialDamage(initialDamage_)
+	{
+	}
+};
+
+/// A part of a law that a scene can leave out.
+struct LawEffect {
+	unsigned    bit;
+	const char* name; ///< of the switch in the material
+	const char* doc;
+};
+
+/// An entry of effects() from a law's list of effects, E(switch, bit, doc).
+#define DDEM_LAW_EFFECT(name, bit, doc) { unsigned(bit), #name, doc },
+
+/** What most laws have in common; a law derives from it and says only what is different.
+ * A law has no state of its own. It gives, beside these: name; Parameters with its list, Prepared made of them (which checks them); State of a
+ * sub-element and its fields(); virgin(); advance(); energies(). See Elastic and ScalarDamage, and the manual's page on a new law. */
+struct LawDefaults {
+	/// Mask of all effects, with the book.
+	static constexpr unsigned allEffects = LawEffects::Energy;
+	/// Masks that do the same are one.
+	static constexpr unsigned distinct(unsigned effects) { return effects; }
+	/// Whether the law without any of its effects is plain elasticity, and may run as that.
+	static constexpr bool elasticWithoutEffects = false;
+	/// Whether the moduli can grow above the initial ones (stiffening() then tells by how much).
+	static constexpr bool stiffens(unsigned) { return false; }
+	/// Whether it can break (damage() then tells how much).
+	static constexpr bool                damages(unsigned) { return false; }
+	static const std::vector<LawEffect>& effects()
+	{
+		static const std::vector<LawEffect> none;
+		return none;
+	}
+	/// The effects of a mask that do anything with these parameters.
+	template <class Parameters> static unsigned effective(const Parameters&, unsigned effects) { return effects; }
+
+	/// Numbers that a triangle has of its own, at most mostProperties.
+	template <class Number> struct Properties { };
+	template <unsigned effects, class P, class Visit> static void properties(P&, Visit&&) { }
+	template <class Prepared> static Properties<double> propertiesOf(const Prepared&, const TriangleProperties&) { return {}; }
+
+	/// Called when the energy book is opened: fields that only the book has get their values.
+	template <unsigned effects, class Prepared, class State> static void openBook(const Prepared&, const PlaneTensor&, State&) { }
+
+	template <class Prepared, class State> static double damage(const Prepared&, const Properties<double>&, const State&) { return 0; }
+	template <class Prepared, class State> static double stiffening(const Prepared&, const State&) { return 1; }
+};
+
+/** Consecutive triangles of one law: their parameters and their state. Asked once for a tile, never for one triangle, in a step.
+ * Triangles are counted from the group's first. */
+class LawGroup {
+public:
+	std::size_t    begin = 0, end = 0; ///< rows in the system
+	GroupConstants constants;
+
+	virtual ~LawGroup() = default;
+	virtual std::unique_ptr<LawGroup> clone() const = 0;
+
+	// --- what it is
+	virtual const char*                   name() const              = 0; ///< of the law
+	virtual const std::vector<LawEffect>& effectsOfLaw() const      = 0; ///< all that the law has
+	virtual unsigned                      effects() const           = 0; ///< those that are on
+	virtual TriangleStiffness             stiffness() const         = 0; ///< at no pressure, without damage
+	virtual bool                          stiffensInRuns() const    = 0; ///< whether stiffening() may exceed 1
+	virtual bool                          knowsDamage() const       = 0; ///< whether damage() may exceed 0
+
+	// --- state
+	/// Virgin state of so many triangles, from `begin` to `end`. \throws std::logic_error unless there is one entry for each.
+	virtual void start(const std::vector<TriangleProperties>& triangles) = 0;
+	using StrainOf = std::function<std::array<PlaneTensor, 3>(std::size_t triangle)>;
+	/// Opens the energy book, which begins with the present strains, or leaves it.
+	virtual void keepBook(bool energy, const StrainOf& strain) = 0;
+	std::size_t  triangles() const { return end - begin; }
+	/// The one list of what a sub-element remembers.
+	const std::vector<StateField>& fields() const { return fieldList; }
+	/// \returns null where this group has none of that name.
+	const StateField* field(const std::string& name) const;
+	/// Components of a field, 1, 3 or 4 numbers.
+	void get(const StateField&, std::size_t triangle, std::size_t k, double* to) const;
+	void set(const StateField&, std::size_t triangle, std::size_t k, const double* from);
+	/// To be called after the last set().
+	void         fillUp() { columns.fillUp(); }
+	/// Bytes that the state of a triangle takes: its columns, and what it has of its own.
+	std::size_t         bytesPerTriangle() const;
+	const StateColumns& state() const { return columns; }
+
+	// --- what it does
+	/// Picks the loop for a treatment of rotation. `widest` false takes the instructions that every processor has.
+	virtual void prepare(RotationTreatment rotation, bool widest = true) = 0;
+	/// One step of a tile; see TileLoop. The arrays' rows are those of the system.
+	virtual void advance(std::size_t tile, const ElementArrays&, double dt, StepEnergy&) = 0;
+	std::size_t  tiles() const { return tilesOf(triangles()); }
+	/// Stress that the law gives to the strains within dt [s], from the present state, which stays as it is [Pa].
+	virtual std::array<PlaneTensor, 3>
+	stress(std::size_t triangle, const std::array<PlaneTensor, 3>& strain, double dt) const = 0;
+	/// Damage of the sub-elements [-], 0 intact to 1.
+	virtual std::array<double, 3> damage(std::size_t triangle) const = 0;
+	/// Largest factor on the moduli in the present state, ≥ 1, for the time step [-].
+	virtual double stiffening(std::size_t triangle) const = 0;
+	/// A number of the triangle's own by its name (properties() of the law).
+	virtual double property(const std::string& name, std::size_t triangle) const = 0;
+
+protected:
+	StateColumns            columns;
+	std::vector<StateField> fieldList;
+	std::size_t             propertyBytes = 0; ///< of all triangles
+};
+
+/// A group pointer that copies what it points to.
+class GroupPointer {
+public:
+	GroupPointer(std::unique_ptr<LawGroup> made) // NOLINT: a group is meant to become one
+	        : group(std::move(made))
+	{
+	}
+	GroupPointer(const GroupPointer& other)
+	        : group(other.group->clone())
+	{
+	}
+	GroupPointer(GroupPointer&&) = default;
+	GroupPointer& operator=(GroupPointer other)
+	{
+		group = std::move(other.group);
+		return *this;
+	}
+	LawGroup&       operator*() { return *group; }
+	const LawGroup& operator*() const { return *group; }
+	LawGroup*       operator->() { return group.get(); }
+	const LawGroup* operator->() const { return group.get(); }
+
+private:
+	std::unique_ptr<LawGroup> group;
+};
+
+/// An empty group of a law; `effects` is a mask of what is on beside the energy book.
+/// \throws std::invalid_argument for a parameter out of bounds or an unknown effect.
+template <class Law> std::unique_ptr<LawGroup> makeGroup(const typename Law::Parameters& parameters, unsigned effects);
+
+} // namespace yade::ddem

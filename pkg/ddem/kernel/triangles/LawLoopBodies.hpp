@@ -1,0 +1,174 @@
+// GPL v2 or later, see LICENSE.
+// Body of the loops over tiles, written once for all laws, frames, effects and instruction sets. Included only by the files that
+// LawLoops.cpp.in makes.
+#pragma once
+
+#include <pkg/ddem/kernel/triangles/LawLoops.hpp>
+#include <pkg/ddem/kernel/triangles/StateColumns.hpp>
+
+#include <array>
+#include <type_traits>
+#include <utility>
+
+namespace yade::ddem {
+
+/// Reads the numbers that a triangle has of its own.
+template <class Law, class Number> struct LoadProperties {
+	const TileState<Law>& tile;
+	std::size_t           lane;
+	std::size_t           next = 0;
+
+	void operator()(const char*, const char*, Number& to)
+	{
+		to = Lanes<Number>::load(tile.property[next] + tile.propertyStep[next] * lane);
+		next++;
+	}
+};
+
+/// Rotation part of the forces and of the energy [J], eqs. 2–3; nothing where cores do not rotate.
+template <class Frame, bool energy, class Number>
+inline void
+addRotation(const GroupConstants& g, const LoadedElement<Number>& element, RelativeDisplacements<Number>& q, Number& stored)
+{
+	if constexpr (Frame::coreRotates) {
+		const Number strain = rotationStrain(element.reference, element.du);
+		const Number stress = Number(g.rotationModulus) * strain;
+		addRotationForces(element.reference, stress, Number(g.thickness), q);
+		if constexpr (energy) stored = Number(0.5 * g.thickness) * element.reference.area() * stress * strain;
+	}
+}
+
+/// Numbers of a batch by lane, of which those beyond `count` do not count.
+template <class Number> inline double sumOfFirst(const Number& value, std::size_t count)
+{
+	double lane[Lanes<Number>::width];
+	Lanes<Number>::store(lane, value);
+	double sum = 0;
+	for (std::size_t i = 0; i < count; i++)
+		sum += lane[i];
+	return sum;
+}
+
+/** Whole batches: rows of `a` from `begin` on, places in the tile from `lane` on. Of the last batch `real` lanes count in the energies.
+ * InstructionSet is only a tag that keeps the functions of different instruction sets apart; flatten inlines everything, so that no
+ * shared inline function is emitted with the instructions of one of them; one copy of the code gives every batch the same bits. */
+template <class Law, unsigned effects, class Frame, class Number, class InstructionSet>
+__attribute__((noinline, noclone, flatten)) void advanceBatches(
+        const ElementArrays&  a,
+        const GroupConstants& g,
+        const TileState<Law>& tile,
+        double                dt,
+        std::size_t           begin,
+        std::size_t           lane,
+        std::size_t           batches,
+        std::size_t           real,
+        StepEnergy&           sum)
+{
+	constexpr bool        energy = effects & LawEffects::Energy;
+	constexpr std::size_t width  = Lanes<Number>::width;
+	const std::size_t     stride = tile.stride;
+	const auto&           law    = *tile.law;
+	Number                stored(0.), turned(0.), plastic(0.), damage(0.);
+	for (std::size_t b = 0; b < batches; b++) {
+		const std::size_t           i = begin + b * width, place = lane + b * width;
+		const LoadedElement<Number> element = loadElement<Frame, Number>(a, i);
+		const auto                  strains = subElementStrains(element.reference, element.du);
+
+		typename Law::template Properties<Number> own;
+		Law::template properties<effects>(own, LoadProperties<Law, Number> { tile, place });
+		SubElementTensors<Number> stress;
+		Number                    volume(0.), storedHere(0.), turnedHere(0.), plasticHere(0.), damageHere(0.);
+		if constexpr (energy) volume = Number(0.5 * g.thickness) * element.reference.twiceSubArea();
+		for (std::size_t k = 0; k < 3; k++) {
+			double* const                        column = tile.columns + k * stride + place;
+			typename Law::template State<Number> state {};
+			Law::template fields<effects>(state, LoadFields<Number> { column, 3 * stride });
+			const PlaneTensorOf<Number> strain { strains[k].xx, strains[k].yy, Number(0.), strains[k].xy };
+			const PlaneTensorOf<Number> s = Law::template advance<effects>(law, own, strain, dt, state);
+			Law::template fields<effects>(state, StoreFields<Number> { column, 3 * stride });
+			stress[k] = { s.xx, s.yy, s.xy };
+			if constexpr (energy) {
+				const auto densities = Law::template energies<effects>(law, strain, s, state);
+				storedHere           = storedHere + volume * densities.stored;
+				plasticHere          = plasticHere + volume * densities.plastic;
+				damageHere           = damageHere + volume * densities.damage;
+			}
+		}
+		RelativeDisplacements<Number> q = stressForces(element.reference, stress, Number(g.thickness));
+		addRotation<Frame, energy>(g, element, q, turnedHere);
+		storeForces<Frame>(a, i, element, q);
+		if constexpr (energy) {
+			if (b + 1 == batches && real < width) {
+				sum.elastic += sumOfFirst(storedHere, real);
+				sum.rotation += sumOfFirst(turnedHere, real);
+				sum.plastic += sumOfFirst(plasticHere, real);
+				sum.damage += sumOfFirst(damageHere, real);
+			} else {
+				stored  = stored + storedHere;
+				turned  = turned + turnedHere;
+				plastic = plastic + plasticHere;
+				damage  = damage + damageHere;
+			}
+		}
+	}
+	if constexpr (energy) {
+		sum.elastic += Lanes<Number>::sum(stored);
+		sum.rotation += Lanes<Number>::sum(turned);
+		sum.plastic += Lanes<Number>::sum(plastic);
+		sum.damage += Lanes<Number>::sum(damage);
+	}
+}
+
+template <class Law, unsigned effects, class Frame, class Number, class InstructionSet>
+void tileLoop(
+        const ElementArrays&  a,
+        const GroupConstants& g,
+        const TileState<Law>& tile,
+        double                dt,
+        std::size_t           begin,
+        std::size_t           end,
+        StepEnergy&           sum)
+{
+	constexpr std::size_t width   = Lanes<Number>::width;
+	const std::size_t     batches = (end - begin) / width, done = batches * width, rest = end - begin - done;
+	static constexpr auto advance = &advanceBatches<Law, effects, Frame, Number, InstructionSet>;
+	advance(a, g, tile, dt, begin, 0, batches, width, sum);
+	if (rest == 0) return;
+	FilledBatch filled(a, begin + done, rest, Frame::coreRotates);
+	advance(filled.arrays(), g, tile, dt, 0, done, 1, rest, sum);
+	filled.handOver();
+}
+
+template <class Law, class Frame, class Number, class InstructionSet, std::size_t... masks>
+constexpr std::array<TileLoop<Law>, sizeof...(masks)> tileLoops(std::index_sequence<masks...>)
+{
+	return { { &tileLoop<Law, Law::distinct(unsigned(masks)), Frame, Number, InstructionSet>... } };
+}
+
+/// The batches of an instruction set; none where this file is compiled without it.
+template <class InstructionSet> struct BatchOf {
+	using Type = void;
+};
+template <> struct BatchOf<Baseline> {
+	using Type = xsimd::make_sized_batch_t<double, 2>;
+};
+#if defined(__AVX2__) && defined(__FMA__)
+template <> struct BatchOf<Avx2> {
+	using Type = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
+};
+#endif
+
+template <class Law, class Frame, class InstructionSet>
+TileLoop<Law> LawLoops<Law, Frame, InstructionSet>::select(unsigned effects)
+{
+	using Batch = typename BatchOf<InstructionSet>::Type;
+	if constexpr (std::is_void_v<Batch>) return nullptr;
+	else {
+		// masks that do the same share one loop
+		static constexpr auto loops
+		        = tileLoops<Law, Frame, Batch, InstructionSet>(std::make_index_sequence<Law::allEffects + 1>());
+		return loops.at(effects);
+	}
+}
+
+} // namespace yade::ddem
