@@ -2,12 +2,14 @@
 """A sample of deformable triangles: its bodies in the scene, and whole-sample arrays of its state."""
 import math
 import numbers
+import threading
 
 import numpy as np
 
 from yade import Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
 from . import crackband
+from .arrays import BodyIds, fixed
 
 
 def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
@@ -39,15 +41,20 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	nodes = []
 	for x, y in mesh.nodes:
 		nodes.append(_body(DeformableNode(), Vector3(x + offset[0], y + offset[1], offset[2]), "zXYZ"))
-	node_ids = np.array(O.bodies.append(nodes), dtype=int)
+	node_ids = O.bodies.append(nodes)
 	triangles = []
 	centres = mesh.nodes[mesh.triangles].mean(axis=1)
-	for triangle, centre, region, energy, band in zip(mesh.triangles, centres, mesh.regions, energies, bands.tolist()):
-		shape = DeformableTriangle(nodes=Vector3i(*(int(node_ids[v]) for v in triangle)), thickness=thickness, fractureEnergy=energy, bandFactor=band)
+	for triangle, centre, region, energy, band in zip(
+		mesh.triangles.tolist(), centres, mesh.regions, energies, bands.tolist()
+	):
+		shape = DeformableTriangle(
+			nodes=Vector3i(*(node_ids[v] for v in triangle)), thickness=thickness, fractureEnergy=energy,
+			bandFactor=band
+		)
 		body = _body(shape, Vector3(centre[0] + offset[0], centre[1] + offset[1], offset[2]), "zXY")
 		body.material = by_region[region]
 		triangles.append(body)
-	return Block(mesh, node_ids, np.array(O.bodies.append(triangles), dtype=int), thickness)
+	return Block(mesh, node_ids, O.bodies.append(triangles), thickness)
 
 
 def time_step(safety=0.8):
@@ -58,100 +65,189 @@ def time_step(safety=0.8):
 	"""
 	if not 0 < safety <= 1:
 		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
-	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
-	return safety * (_engine().criticalTimeStep() if engines else DeformableEngine().timeStepOfScene())
+	engine = _engine_if_any()
+	return safety * (engine.criticalTimeStep() if engine else DeformableEngine().timeStepOfScene())
 
 
 class Block:
 	"""Deformable triangles appended together, and their state as arrays.
 
-	Arrays have a row per node or triangle in the order of :attr:`node_ids` and :attr:`triangle_ids`, which is that of :attr:`mesh`. Kinematic arrays are views of the
-	engine's memory (no copy, always current); the others are computed when asked for.
+	Arrays have a row per node or triangle in the order of :attr:`node_ids` and :attr:`triangle_ids`, which is that
+	of :attr:`mesh`. They cannot be written to: what can be set has a setter (:attr:`velocity`, :attr:`spin`,
+	:attr:`velocities`), or is set in the State of the bodies. Kinematic arrays may be views of the engine's memory,
+	which change as a run goes on: keep a copy, not the array, of what is to be compared later. The others are
+	computed when asked for.
+
+	Positions, displacements and velocities can be read before O.engines is set; stresses, strains, damage,
+	rotations and forces need the engine that computes them.
+
+	:raises RuntimeError: a quantity needs a DeformableEngine and O.engines has none, or the bodies are not in the
+		present scene.
 	"""
 
 	def __init__(self, mesh, node_ids, triangle_ids, thickness):
 		self.mesh = mesh  #: the mesh as appended, renumbered
-		self.node_ids = node_ids  #: body ids of the nodes
-		self.triangle_ids = triangle_ids  #: body ids of the triangles
+		self.node_ids = BodyIds(node_ids)  #: body ids of the nodes, see :class:`arrays.BodyIds`
+		self.triangle_ids = BodyIds(triangle_ids)  #: body ids of the triangles
 		self.thickness = thickness  #: [m]
 
-	# --- whole-sample state
+	# --- motion
 	@property
 	def positions(self):
 		"""Positions of the nodes (n, 2) [m]."""
-		return self._nodes("nodePosition")
+		return self._points("node", "Position")
 
 	@property
 	def displacements(self):
 		"""Displacements of the nodes since the start (n, 2) [m]."""
-		return self.positions - self.reference_positions
+		return fixed(self.positions - self.reference_positions)
 
 	@property
 	def reference_positions(self):
 		"""Stress-free positions of the nodes (n, 2) [m]."""
-		origin = O.bodies[int(self.node_ids[0])].state.refPos
-		return self.mesh.nodes + (np.array([origin[0], origin[1]]) - self.mesh.nodes[0])
+		origin = _bodies(self.node_ids[[0, -1]], DeformableNode)[0].state.refPos
+		return fixed(self.mesh.nodes + (np.array([origin[0], origin[1]]) - self.mesh.nodes[0]))
 
 	@property
 	def velocities(self):
-		"""Velocities of the nodes (n, 2) [m/s]."""
-		return self._nodes("nodeVelocity")
+		"""Velocities of the nodes (n, 2) [m/s].
 
+		Set them, before the first step or between runs, with an array or one pair for all: ``block.velocities =
+		field``. The cores then take the velocity and the spin that the linear field of their corners has where
+		they are, because the nodes alone hold a small share of the mass (a sixth by default). Held nodes are
+		told their velocity as well, which prescribes it. ``block.velocities[:] = …`` is refused by numpy: the
+		array is no place to write to.
+
+		:raises ValueError: values of another shape, or not finite.
+		:raises RuntimeError: a run is going on.
+		"""
+		return self._points("node", "Velocity")
+
+	@velocities.setter
+	def velocities(self, values):
+		nodes = np.array(values, float)
+		if nodes.shape not in ((2,), (len(self.node_ids), 2)) or not np.isfinite(nodes).all():
+			bad = np.count_nonzero(~np.isfinite(nodes))
+			raise ValueError(
+				"velocities must be finite numbers [m/s]: one pair (vx, vy) for all nodes or an array "
+				f"({len(self.node_ids)}, 2), not an array of shape {nodes.shape} with {bad} values "
+				"that are not finite"
+			)
+		nodes = np.broadcast_to(nodes, (len(self.node_ids), 2))
+		corners, v = self.positions[self.mesh.triangles], nodes[self.mesh.triangles]
+		edges, change = corners[:, 1:] - corners[:, :1], v[:, 1:] - v[:, :1]
+		gradient = np.linalg.solve(edges, change)  # rows: derivatives along x and y
+		arm = self._points("core", "Position") - corners.mean(axis=1)
+		cores = v.mean(axis=1) + np.einsum("ti,tij->tj", arm, gradient)
+		self._set_motion(nodes, cores, 0.5 * (gradient[:, 0, 1] - gradient[:, 1, 0]), held_too=True)
+
+	@property
+	def velocity(self):
+		"""Velocity (vx, vy) of the centre of mass [m/s]: the mean over nodes and cores, weighted with their
+		masses.
+
+		Set it, before O.engines or between runs, to throw a block: ``block.velocity = (10, 0)``. Nodes and
+		cores then move as one rigid body with this velocity and the :attr:`spin` that they had; motion within
+		the block ends. Directions that are held keep the velocity prescribed there.
+
+		:raises ValueError: not two finite numbers.
+		:raises RuntimeError: a run is going on.
+		"""
+		return fixed(self._motion()[0])
+
+	@velocity.setter
+	def velocity(self, value):
+		velocity = np.array(value, float)
+		if velocity.shape != (2,) or not np.isfinite(velocity).all():
+			raise ValueError(
+				f"velocity = {value!r} must be two finite numbers (vx, vy) [m/s]; a velocity for each "
+				"node goes to block.velocities"
+			)
+		self._move_rigidly(velocity, None)
+
+	@property
+	def spin(self):
+		"""Rate of rotation about the centre of mass [rad/s], counter-clockwise: angular momentum over moment of
+		inertia.
+
+		Set it, before O.engines or between runs: nodes and cores then move as one rigid body that turns at this
+		rate about the centre of mass, which keeps its :attr:`velocity`; cores turn with it. Motion within the
+		block ends. Directions that are held keep the velocity prescribed there.
+
+		:raises ValueError: not a finite number.
+		:raises RuntimeError: a run is going on.
+		"""
+		return self._motion()[1]
+
+	@spin.setter
+	def spin(self, value):
+		if not isinstance(value, numbers.Real) or not math.isfinite(value):
+			raise ValueError(f"spin = {value!r} must be a finite number [rad/s], counter-clockwise")
+		self._move_rigidly(None, float(value))
+
+	# --- what the engine computes
 	@property
 	def node_forces(self):
 		"""Internal forces on the nodes in the last step (n, 2) [N]; minus the reaction where a node is held."""
-		return self._nodes("nodeForce")
+		engine = _engine("node_forces")
+		return fixed(engine.array("nodeForce")[self._rows(engine, "node")])
 
 	@property
 	def stress(self):
 		"""Stress of the sub-elements (m, 3, 4): xx, yy, zz, xy in global axes [Pa]."""
-		return self._triangles("stress")
+		return self._values("stress", "stress")
 
 	@property
 	def strain(self):
 		"""Strain of the sub-elements (m, 3, 4): xx, yy, zz, xy in global axes [-]."""
-		return self._triangles("strain")
+		return self._values("strain", "strain")
 
 	@property
 	def plastic_strain(self):
 		"""Plastic strain of the sub-elements (m, 3, 4) [-]."""
-		return self._triangles("plasticStrain")
+		return self._values("plastic_strain", "plasticStrain")
 
 	@property
 	def sub_element_damage(self):
 		"""Damage η/η_max of the sub-elements (m, 3) [-]."""
-		return self._triangles("damage")
+		return self._values("sub_element_damage", "damage")
 
 	@property
 	def damage(self):
 		"""Damage η/η_max of the triangles (m,) [-], mean of their sub-elements."""
-		return self.sub_element_damage.mean(axis=1)
+		return fixed(self._values("damage", "damage").mean(axis=1))
 
 	@property
 	def rotation(self):
 		"""Rotation of the triangles (m,) [rad], counter-clockwise."""
-		return self._triangles("rotation")
+		return self._values("rotation", "rotation")
 
 	@property
 	def area(self):
 		"""Reference area of the triangles (m,) [m²]."""
-		return self._triangles("area")
+		return self._values("area", "area") if _engine_if_any() else self.mesh.areas
 
 	@property
 	def degrees_of_freedom(self):
-		"""Unknowns of the sample: two per node, two per core, and one rotation per core where cores rotate."""
-		per_core = 3 if _engine().rotation == "cosserat" else 2
+		"""Unknowns of the sample: two per node, two per core, and one rotation per core where cores rotate (as
+		they do unless O.engines says otherwise).
+		"""
+		per_core = 3 if _settings().rotation == "cosserat" else 2
 		return 2 * len(self.node_ids) + per_core * len(self.triangle_ids)
 
 	# --- boundary conditions
 	def boundary(self, side):
-		"""Body ids of the nodes on a side ("top", "bottom", "left", "right") or where ``side(x, y)`` is true."""
+		"""Body ids of the border's nodes on a side ("top", "bottom", "left", "right"), or where ``side(x, y)``
+		is true, x and y being arrays of the mesh's coordinates [m].
+
+		:raises ValueError: the sample has no such side or no such node, see :meth:`mesh.Mesh.boundary`.
+		"""
 		return self.node_ids[self.mesh.boundary(side)]
 
 	def hold(self, ids, dofs="xy"):
 		"""Hold the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity then stays as prescribed (0 unless set)."""
-		for i in ids:
-			state = O.bodies[int(i)].state
+		for i in np.atleast_1d(BodyIds(ids)):
+			state = O.bodies[i].state
 			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | set(dofs)))
 
 	def drive(self, ids, velocity):
@@ -160,8 +256,8 @@ class Block:
 			if value is None:
 				continue
 			self.hold(ids, "xy"[axis])
-			for i in ids:
-				O.bodies[int(i)].state.vel[axis] = value
+			for i in np.atleast_1d(BodyIds(ids)):
+				O.bodies[i].state.vel[axis] = value
 
 	# --- pictures
 	def plot(self, quantity, file=None, deformed=1.0, **options):
@@ -178,29 +274,166 @@ class Block:
 		shape = self.reference_positions + deformed * self.displacements
 		return plots.field((shape, self.mesh.triangles), values, file=file, **options)
 
-	def _nodes(self, name):
-		engine = _engine()
-		return engine.array(name)[_rows(engine.values("nodeIds"), self.node_ids)]
+	# --- within
+	def _points(self, kind, quantity):
+		"""Position or velocity of nodes or cores (n, 2), from the engine, or from State where there is none."""
+		engine = _engine_if_any()
+		if engine:
+			return fixed(engine.array(kind + quantity)[self._rows(engine, kind)])
+		bodies = self._nodes() if kind == "node" else self._triangles()
+		attribute = {"Position": "pos", "Velocity": "vel"}[quantity]
+		return fixed(np.array([getattr(body.state, attribute) for body in bodies])[:, :2])
 
-	def _triangles(self, name):
-		engine = _engine()
-		return engine.values(name)[_rows(engine.values("triangleIds"), self.triangle_ids)]
+	def _values(self, name, value):
+		"""What the engine computes of the triangles; the name is that of the block's property."""
+		engine = _engine(name)
+		return fixed(engine.values(value)[self._rows(engine, "core")])
+
+	def _rows(self, engine, kind):
+		"""Where the nodes or cores stand in the engine's arrays."""
+		if kind == "node":
+			return _rows(engine.values("nodeIds"), self.node_ids)
+		return _rows(engine.values("triangleIds"), self.triangle_ids)
+
+	def _nodes(self):
+		return _bodies(self.node_ids, DeformableNode)
+
+	def _triangles(self):
+		return _bodies(self.triangle_ids, DeformableTriangle)
+
+	def _masses(self):
+		"""Masses of nodes and cores [kg]."""
+		engine = _engine_if_any()
+		if engine:
+			return tuple(engine.array(kind + "Mass")[self._rows(engine, kind)] for kind in ("node", "core"))
+		density = np.array([body.material.density for body in self._triangles()])
+		mass, share = density * self.thickness * self.mesh.areas, DeformableEngine().vertexShare
+		corners = np.bincount(self.mesh.triangles.ravel(), np.repeat(share / 3 * mass, 3), len(self.node_ids))
+		return corners, (1 - share) * mass
+
+	def _motion(self, free_only=False):
+		"""Velocity [m/s] of the centre of mass, spin [rad/s], centre and points [m]: the rigid motion that has
+		the momenta of nodes and cores.
+
+		:param free_only: look only at those that nobody holds; where all are held they are taken to be at rest
+		"""
+		masses = self._masses()
+		mass, inertia, spins = np.concatenate(masses), *self._spins(masses[1])
+		points = np.vstack([self._points(kind, "Position") for kind in ("node", "core")])
+		velocities = np.vstack([self._points(kind, "Velocity") for kind in ("node", "core")])
+		centre = (mass[:, None] * points).sum(axis=0) / mass.sum()
+		if free_only:
+			held = [body.state.blockedDOFs for body in self._nodes() + self._triangles()]
+			mass = np.where([bool(set(dofs) & set("xy")) for dofs in held], 0.0, mass)
+			inertia = np.where(["Z" in dofs for dofs in held[len(self.node_ids):]], 0.0, inertia)
+			if not mass.any():
+				return np.zeros(2), 0.0, centre, points
+		middle = (mass[:, None] * points).sum(axis=0) / mass.sum()
+		velocity = (mass[:, None] * velocities).sum(axis=0) / mass.sum()
+		arm = points - middle
+		momentum = (mass * (_across(arm) * (velocities - velocity)).sum(axis=1)).sum() + (inertia * spins).sum()
+		resistance = (mass * (arm**2).sum(axis=1)).sum() + inertia.sum()
+		spin = float(momentum / resistance) if resistance > 0 else 0.0  # 0 for a single point without inertia
+		return velocity + spin * _across(centre - middle), spin, centre, points
+
+	def _spins(self, core_masses):
+		"""Moments of inertia about their centre [kg·m²] and spins [rad/s] of the cores; without inertia where
+		they do not rotate.
+		"""
+		settings = _settings()
+		if settings.rotation != "cosserat":
+			return np.zeros(len(core_masses)), np.zeros(len(core_masses))
+		# the core has what the rigid triangle has more than its corners: m Σ|r|²/12 - (α m/3) Σ|r|²
+		share = settings.vertexShare
+		arms = ((self.mesh.nodes[self.mesh.triangles] - self.mesh.centroids[:, None])**2).sum(axis=(1, 2))
+		inertia = core_masses / (1 - share) * arms * (1 / 12 - share / 3)
+		if _engine_if_any():
+			return inertia, settings.array("coreSpin")[self._rows(settings, "core")]
+		return inertia, np.array([body.state.angVel[2] for body in self._triangles()])
+
+	def _move_rigidly(self, velocity, spin):
+		"""Give the whole a velocity and a spin; None: what its free part has."""
+		own_velocity, own_spin, centre, points = self._motion(free_only=True)
+		velocity, spin = own_velocity if velocity is None else velocity, own_spin if spin is None else spin
+		nodes, cores = np.split(velocity + spin * _across(points - centre), [len(self.node_ids)])
+		self._set_motion(nodes, cores, np.full(len(cores), spin), held_too=False)
+
+	def _set_motion(self, nodes, cores, spins, held_too):
+		"""Write velocities and spins into State, where engines and everybody else read them; held directions
+		only if *held_too*.
+		"""
+		if O.running and threading.current_thread() is threading.main_thread():
+			raise RuntimeError(
+				"a run is going on, which would overwrite velocities that are set now: O.pause() or "
+				"O.wait() first, or set them in a PyRunner"
+			)
+		turns = np.concatenate([np.zeros(len(nodes)), spins]).tolist()
+		velocities = np.vstack([nodes, cores]).tolist()
+		for body, (x, y), turn in zip(self._nodes() + self._triangles(), velocities, turns):
+			state = body.state
+			held, old = "" if held_too else state.blockedDOFs, state.vel
+			state.vel = Vector3(old[0] if "x" in held else x, old[1] if "y" in held else y, old[2])
+			if "Z" not in held:
+				state.angVel = Vector3(0, 0, turn)
+
+
+def _across(arms):
+	"""Velocities (…, 2) at these arms for a spin of 1 rad/s."""
+	return np.stack([-arms[..., 1], arms[..., 0]], axis=-1)
 
 
 def _rows(all_ids, ids):
-	"""Where a block's bodies stand in the engine's arrays; they were appended together, so they stand together."""
-	first = np.searchsorted(all_ids, ids[0])
-	rows = slice(first, first + len(ids))
+	"""Where the bodies with these ids stand in an engine's arrays: a slice if they stand together (then numpy
+	copies nothing), else row numbers.
+	"""
+	order = np.argsort(all_ids, kind="stable")
+	places = np.minimum(np.searchsorted(all_ids, ids, sorter=order), len(all_ids) - 1)
+	rows = order[places]
 	if not np.array_equal(all_ids[rows], ids):
-		raise RuntimeError(f"the bodies {ids[0]} to {ids[-1]} of this block are not in the present scene; append the mesh again after O.reset()")
-	return rows
+		missing = ids[int(np.flatnonzero(all_ids[rows] != ids)[0])]
+		raise RuntimeError(_gone(missing))
+	return slice(rows[0], rows[-1] + 1) if (np.diff(rows) == 1).all() else rows
 
 
-def _engine():
+def _bodies(ids, shape):
+	"""The bodies with these ids, which must be of this shape."""
+	found, there = [], len(O.bodies)
+	for i in ids:
+		body = O.bodies[i] if i < there else None
+		if body is None or not isinstance(body.shape, shape):
+			raise RuntimeError(_gone(i))
+		found.append(body)
+	return found
+
+
+def _gone(missing):
+	return f"body {missing} of this block is not in the present scene; append the mesh again after O.reset()"
+
+
+def _engine_if_any():
+	"""The DeformableEngine of O.engines, None where there is none."""
+	return _engine() if any(isinstance(e, DeformableEngine) for e in O.engines) else None
+
+
+def _settings():
+	"""The DeformableEngine of O.engines, or one with the defaults."""
+	return _engine_if_any() or DeformableEngine()
+
+
+def _engine(wanted=None):
 	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
 	if len(engines) == 1:
 		return engines[0]
-	raise RuntimeError(f"O.engines has {len(engines)} DeformableEngine where one is needed: it keeps and moves the deformable triangles")
+	if engines:
+		raise RuntimeError(
+			f"O.engines has {len(engines)} DeformableEngine where one is needed: it keeps and moves the "
+			"deformable triangles"
+		)
+	what = f"block.{wanted} is computed" if wanted else "deformable triangles are computed and moved"
+	raise RuntimeError(
+		f"{what} by a DeformableEngine, and O.engines has none yet: set O.engines = [ForceResetter(), …, "
+		"DeformableEngine()] first (positions, displacements and velocities of a block can be read without)"
+	)
 
 
 def _body(shape, position, blocked):

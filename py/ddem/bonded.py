@@ -36,6 +36,7 @@ from yade import (
 	NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils)
 
 from . import broken_bonds
+from .arrays import BodyIds, fixed
 
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
 DEFAULT_GAP = 0.0025
@@ -75,16 +76,19 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 		if packing.flat:
 			body.state.blockedDOFs = "zXY"
 		spheres.append(body)
-	ids = np.array(O.bodies.append(spheres), dtype=int)
-	Ip2_BondedMat_BondedMat_BondedPhys().bond([(int(i), int(j)) for i, j in ids[pairs]])
+	ids = BodyIds(O.bodies.append(spheres))
+	Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]])
 	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
 
 
 class BondedSample:
-	"""Bonded spheres appended together, and their state as arrays, a row per sphere in the order of :attr:`ids`."""
+	"""Bonded spheres appended together, and their state as arrays, a row per sphere in the order of :attr:`ids`.
+
+	The arrays are copies and cannot be written to; velocities and positions are set in the State of the spheres.
+	"""
 
 	def __init__(self, ids, lower, upper, bonds):
-		self.ids = ids  #: body ids of the spheres
+		self.ids = BodyIds(ids)  #: body ids of the spheres, see :class:`arrays.BodyIds`
 		self.lower, self.upper = np.array(lower, float), np.array(upper, float)  #: corners of the box at the start [m]
 		self.initial_bonds = bonds  #: number of bonds at the start
 
@@ -96,7 +100,7 @@ class BondedSample:
 			raise RuntimeError("the scene has no spheres of BondedMat")
 		start = np.array([b.state.refPos for b in bodies])
 		radii = np.array([[b.shape.radius] for b in bodies])
-		sample = cls(np.array([b.id for b in bodies]), (start - radii).min(axis=0), (start + radii).max(axis=0), 0)
+		sample = cls([b.id for b in bodies], (start - radii).min(axis=0), (start + radii).max(axis=0), 0)
 		sample.initial_bonds = len(sample.bonds) + len(sample.broken)
 		return sample
 
@@ -106,12 +110,12 @@ class BondedSample:
 	@property
 	def positions(self):
 		"""Centres (n, 3) [m]."""
-		return np.array([O.bodies[int(i)].state.pos for i in self.ids])
+		return fixed(np.array([O.bodies[i].state.pos for i in self.ids]))
 
 	@property
 	def displacements(self):
 		"""Displacements since the start (n, 3) [m]."""
-		return np.array([O.bodies[int(i)].state.displ() for i in self.ids])
+		return fixed(np.array([O.bodies[i].state.displ() for i in self.ids]))
 
 	@property
 	def rotations(self):
@@ -122,39 +126,47 @@ class BondedSample:
 	@property
 	def velocities(self):
 		"""Velocities (n, 3) [m/s]."""
-		return np.array([O.bodies[int(i)].state.vel for i in self.ids])
+		return fixed(np.array([O.bodies[i].state.vel for i in self.ids]))
 
 	@property
 	def radii(self):
 		"""Radii (n,) [m]."""
-		return np.array([O.bodies[int(i)].shape.radius for i in self.ids])
+		return fixed(np.array([O.bodies[i].shape.radius for i in self.ids]))
 
 	@property
 	def degrees_of_freedom(self):
 		"""Unknowns of the sample: six per sphere, three where it is one layer."""
-		return sum(6 - len(O.bodies[int(i)].state.blockedDOFs) for i in self.ids)
+		return sum(6 - len(O.bodies[i].state.blockedDOFs) for i in self.ids)
 
 	@property
 	def bonds(self):
-		"""Bonds that hold: body ids (m, 2), in ascending order."""
-		pairs = np.array(law().bonds()["ids"], dtype=int).reshape(-1, 2)
-		return pairs[self._mine(pairs)]
+		"""Bonds that hold: body ids (m, 2), in ascending order; ``O.interactions[i, j]`` of a row i, j is the
+		bond.
+		"""
+		pairs = BodyIds(law().bonds()["ids"]).reshape(-1, 2)
+		return fixed(pairs[self._mine(pairs)])
 
 	@property
 	def bond_stresses(self):
 		"""Normal (tension positive) and shear stress (m, 2) [Pa] of the bonds that hold, in the order of :attr:`bonds`."""
 		bonds = law().bonds()
-		return np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)[self._mine(np.array(bonds["ids"], dtype=int).reshape(-1, 2))]
+		return fixed(
+			np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)[
+				self._mine(BodyIds(bonds["ids"]).reshape(-1, 2))
+			]
+		)
 
 	@property
 	def broken(self):
 		"""Broken bonds in the order in which they broke, a structured array: id1, id2, step, time [s], position and normal of the crack (3,) [m, -], radius [m],
-		mode ("tension" or "shear"), normal_stress and shear_stress when it broke [Pa], energy it lost [J]."""
+		mode ("tension" or "shear"), normal_stress and shear_stress when it broke [Pa], energy it lost [J]. YADE
+		takes ``int(record["id1"])`` as an id.
+		"""
 		records = [
 			(b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode, b.normalStress, b.shearStress, b.energy) for b in law().brokenBonds()
 		]
 		records = np.array(records, dtype=broken_bonds.DTYPE)
-		return records[self._mine(np.column_stack([records["id1"], records["id2"]]))]
+		return fixed(records[self._mine(np.column_stack([records["id1"], records["id2"]]))])
 
 	@property
 	def broken_fraction(self):
@@ -172,7 +184,7 @@ class BondedSample:
 		broken = self.broken
 		lost = np.bincount(np.concatenate([broken["id1"], broken["id2"]]), minlength=size)[self.ids]
 		held = np.bincount(self.bonds.ravel(), minlength=size)[self.ids]
-		return lost / np.maximum(lost + held, 1)
+		return fixed(lost / np.maximum(lost + held, 1))
 
 	@property
 	def crack_area(self):

@@ -4,12 +4,14 @@ import math
 import numbers
 import time
 
+import numpy as np
+
 from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngine
 
 from .block import Block
 
 
-def platens(block, velocity, ramp=0.0, lateral="fixed", both=False):
+def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", bottom="bottom"):
 	"""Drive the top of a block down (and the bottom up), as stiff platens would.
 
 	:param block: :class:`Block` from :func:`append`
@@ -17,7 +19,13 @@ def platens(block, velocity, ramp=0.0, lateral="fixed", both=False):
 	:param ramp: time over which the speed grows linearly from zero [s].
 	:param lateral: "fixed" holds the end nodes laterally (rough platens), "free" lets them slide.
 	:param both: False: the bottom stands still; True: it moves towards the top at the same speed.
+	:param top, bottom: the nodes that the platens hold, as :meth:`Block.boundary` takes them. A sample without flat
+		ends, such as a disc, needs functions of the mesh's coordinates, for example ``top=lambda x, y: y >
+		0.0245``.
 	:returns: :class:`Platens`; put its ``engines`` into O.engines before the DeformableEngine.
+	:raises ValueError: velocity, ramp or lateral out of range; an end that is no side of the sample (see
+		:meth:`mesh.Mesh.boundary`), has no border edge between its nodes, or does not lie where it should.
+		Nothing is held then.
 	"""
 	if lateral not in ("fixed", "free"):
 		raise ValueError(f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)")
@@ -25,25 +33,41 @@ def platens(block, velocity, ramp=0.0, lateral="fixed", both=False):
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
 	if not ramp >= 0:
 		raise ValueError(f"ramp = {ramp} s must not be negative")
-	return Platens(block, velocity, ramp, lateral, both)
+	return Platens(block, velocity, ramp, lateral, both, top, bottom)
 
 
 class Platens:
 	"""Two platens on a block of deformable triangles: what they do and what they feel. Compression is positive here, as strengths are."""
 
-	def __init__(self, block, velocity, ramp, lateral, both):
+	def __init__(self, block, velocity, ramp, lateral, both, top="top", bottom="bottom"):
 		self.sample = block
-		self.top, self.bottom = block.boundary("top"), block.boundary("bottom")  #: body ids
+		mesh = block.mesh
+		self._rows = {"top": mesh.boundary(top), "bottom": mesh.boundary(bottom)}
+		shared = np.intersect1d(*self._rows.values())
+		if len(shared):
+			x, y = mesh.nodes[shared[0]]
+			raise ValueError(
+				f"platens: {len(shared)} nodes, such as the one at ({x:.6g}, {y:.6g}) m, belong to "
+				"both ends; top= and bottom= must name different nodes"
+			)
+		widths = {name: _loaded_width(mesh, name, rows) for name, rows in self._rows.items()}
+		upper = _level(mesh.nodes[self._rows["top"], 1], np.max)
+		lower = _level(mesh.nodes[self._rows["bottom"], 1], np.min)
+		self.height = upper - lower  #: gauge length: distance of the mean levels of both ends at the start [m]
+		if not self.height > 0:
+			raise ValueError(
+				f"platens: the top lies at y = {upper:.6g} m, not above the bottom at {lower:.6g} m; "
+				"exchange top= and bottom="
+			)
+		self.area = widths["top"] * block.thickness  #: loaded area of the top, seen along the load [m²]
+		self.area_bottom = widths["bottom"] * block.thickness  #: that of the bottom [m²]
+		self.top, self.bottom = (block.node_ids[self._rows[name]] for name in ("top", "bottom"))  #: body ids
 		dofs = "xy" if lateral == "fixed" else "y"
 		for ids in (self.top, self.bottom):
 			block.hold(ids, dofs)
 		self.engines = [_drive(self.top, -velocity, ramp)]
 		if both:
 			self.engines.append(_drive(self.bottom, velocity, ramp))
-		nodes = block.mesh.nodes
-		self._rows = {"top": block.mesh.boundary("top"), "bottom": block.mesh.boundary("bottom")}
-		self.height = nodes[:, 1].max() - nodes[:, 1].min()  #: [m]
-		self.area = (nodes[self._rows["top"], 0].max() - nodes[self._rows["top"], 0].min()) * block.thickness  #: of the loaded face [m²]
 
 	@property
 	def force_top(self):
@@ -62,18 +86,52 @@ class Platens:
 
 	@property
 	def stress(self):
-		"""Average normal stress of both ends [Pa], compression positive: (F_top + F_bottom)/2A."""
-		return 0.5 * (self.force_top + self.force_bottom) / self.area
+		"""Mean normal stress of both ends [Pa], compression positive: (F_top/A_top + F_bottom/A_bottom)/2."""
+		return 0.5 * (self.force_top + self.force_bottom * (self.area / self.area_bottom)) / self.area
 
 	@property
 	def strain(self):
-		"""Shortening of the sample over its height [-], compression positive."""
+		"""Shortening of the sample over its :attr:`height` [-], compression positive: of the distance between
+		the means of both ends.
+		"""
 		moved = self.sample.displacements
 		return float(moved[self._rows["bottom"], 1].mean() - moved[self._rows["top"], 1].mean()) / self.height
 
 
+def _loaded_width(mesh, name, rows):
+	"""Width [m] of the border between these nodes as the load sees it: gaps such as the mouth of a notch do not
+	count.
+	"""
+	edges = mesh.border_between(rows)
+	alone = np.setdiff1d(rows, edges)
+	if len(alone):
+		x, y = mesh.nodes[alone[0]]
+		raise ValueError(
+			f"platens: {name}= finds {len(rows)} node{'s' * (len(rows) > 1)}, and no edge of the border "
+			f"joins the one at ({x:.6g}, {y:.6g}) m with another of them: "
+			f"it has no loaded area, so there is no stress; let the function of {name}= name whole edges, "
+			"for example all border nodes within a few edge lengths of it"
+		)
+	left, right = np.array(sorted(sorted(ends) for ends in mesh.nodes[edges, 0].tolist())).T
+	reach = np.maximum.accumulate(right)
+	gaps = np.flatnonzero(left[1:] > reach[:-1])
+	width = float(sum(reach[[*gaps, -1]] - left[[0, *(gaps + 1)]]))
+	if not width > 0:
+		raise ValueError(
+			f"platens: the border edges of {name}= are all along the load, x = {left[0]:.6g} m: they have "
+			"no loaded area; name edges across the load"
+		)
+	return width
+
+
+def _level(heights, outermost):
+	"""Mean of the heights [m]; exactly theirs where they are the same."""
+	reference = outermost(heights)
+	return float(reference + (heights - reference).mean())
+
+
 def _drive(ids, velocity, ramp):
-	return RampedTranslationEngine(ids=[int(i) for i in ids], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp)
+	return RampedTranslationEngine(ids=ids, translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp)
 
 
 def run(until=None, steps=None, progress=True):

@@ -17,7 +17,8 @@ All lengths are in metres, angles in degrees. A mesh is a :class:`Mesh`: nodes, 
 	)
 	print(mesh.quality())
 
-	mesh = ddem.mesh.read("plate.msh")       # Gmsh, VTK and whatever else meshio reads; physical groups become regions
+	# Gmsh, VTK, Abaqus and whatever else meshio reads; physical groups and element sets become regions
+	mesh = ddem.mesh.read("plate.msh", length_unit="mm")
 """
 from .files import read
 from .generate import polygon, rectangle

@@ -15,7 +15,7 @@ def arrays(nodes, triangles, regions, region_names):
 		raise ValueError(f"nodes must be (n, 2) coordinates [m], not an array of shape {nodes.shape}")
 	if not np.isfinite(nodes).all():
 		index = int(np.flatnonzero(~np.isfinite(nodes).all(axis=1))[0])
-		raise ValueError(f"node {index} is at {_point(nodes[index])}: coordinates must be finite numbers")
+		raise ValueError(f"node {index} is at {point(nodes[index])}: coordinates must be finite numbers")
 	indices = np.array(triangles)
 	if indices.ndim != 2 or indices.shape[1] != 3 or indices.dtype.kind not in "iu":
 		raise ValueError(f"triangles must be (m, 3) integer node indices, not {indices.dtype} of shape {indices.shape}")
@@ -73,13 +73,17 @@ def _duplicates(mesh):
 def _nodes(mesh):
 	unused = np.setdiff1d(np.arange(len(mesh.nodes)), mesh.triangles)
 	if len(unused):
-		raise ValueError(f"node {unused[0]} at {_point(mesh.nodes[unused[0]])} belongs to no triangle{_more(unused)}; remove it")
+		raise ValueError(
+			f"node {unused[0]} at {point(mesh.nodes[unused[0]])} belongs to no triangle{_more(unused)}; "
+			"remove it"
+		)
 	from scipy.spatial import cKDTree  # slow to import
 	twins = cKDTree(mesh.nodes).query_pairs(_CLOSE * mesh.edge_lengths.min(), output_type="ndarray")
 	if len(twins):
 		a, b = sorted(twins.tolist())[0]
 		raise ValueError(
-			f"nodes {a} and {b} are both at {_point(mesh.nodes[a])}{_more(twins)}; the triangles there are not joined: use one node for "
+			f"nodes {a} and {b} are both at {point(mesh.nodes[a])}{_more(twins)}; the triangles there are "
+			"not joined: use one node for "
 			"both, for example by merging duplicate nodes in the program that made the mesh"
 		)
 
@@ -91,7 +95,8 @@ def _manifold(mesh):
 		a, b = edges[crowded[0]]
 		triangles = ", ".join(str(t) for t in np.flatnonzero(unique == crowded[0]) // 3)
 		raise ValueError(
-			f"the edge between nodes {a} and {b}, {_point(mesh.nodes[a])} to {_point(mesh.nodes[b])}, belongs to {count[crowded[0]]} "
+			f"the edge between nodes {a} and {b}, {point(mesh.nodes[a])} to {point(mesh.nodes[b])}, "
+			f"belongs to {count[crowded[0]]} "
 			f"triangles ({triangles})"
 			f"{_more(crowded)}; at most two can share an edge"
 		)
@@ -104,18 +109,19 @@ def _overlaps(mesh):
 	first, second, node = conflict
 	if node >= 0:
 		raise ValueError(
-			f"node {node} at {_point(mesh.nodes[node])} of triangle {first} lies on an edge of {_triangle(mesh, second)} without being "
+			f"node {node} at {point(mesh.nodes[node])} of triangle {first} lies on an edge of "
+			f"{_triangle(mesh, second)} without being "
 			"one of its nodes; the two are not joined: split that triangle at the node"
 		)
 	raise ValueError(f"{_triangle(mesh, first)} overlaps {_triangle(mesh, second)}; remove one of them or move its nodes")
 
 
-def _point(position):
+def point(position):
 	return "(" + ", ".join(f"{value:.6g}" for value in position) + ") m"
 
 
 def _triangle(mesh, index):
-	corners = " ".join(_point(corner)[:-2] for corner in mesh.nodes[mesh.triangles[index]])
+	corners = " ".join(point(corner)[:-2] for corner in mesh.nodes[mesh.triangles[index]])
 	return f"triangle {index} with corners {corners} m"
 
 

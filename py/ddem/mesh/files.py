@@ -10,41 +10,54 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from . import abaqus
 from .triangles import Mesh
 
 _REGION = "region"  # cell array with the region's number; "region:NAME" marks the triangles of one region, for formats without names
+_MATERIALS = ("medit:ref", "nastran:ref", "avsucd:material")  # meshio's cell arrays of numbers of materials
+_NUMBERED = ("gmsh:physical", _REGION + ":", *_MATERIALS)
 
 
-def read(path, orient=False):
-	"""Read a plane triangle mesh from a Gmsh, VTK or other file known to meshio.
+def read(path, orient=False, length_unit="m", regions=None):
+	"""Read a plane triangle mesh from a Gmsh, VTK, Abaqus or other file known to meshio.
 
-	Physical surfaces of Gmsh become regions: under their name, or as "physical N" where they have none. Points and curves in the file are ignored,
-	points of no triangle dropped.
+	Physical surfaces of Gmsh become regions: under their name, or as "physical N" where they have none. So do
+	element sets of Abaqus and CalculiX (one that holds all triangles only if it is the only one) and of other
+	formats, and the numbers of materials that Medit, Nastran and AVS-UCD files have, as "material N". Elements
+	CPE3, CPS3, S3 and the like are read as the plane-strain triangles of this package. Points, curves and sets of
+	nodes in the file are ignored, points of no triangle dropped.
 
 	:param orient: turn clockwise triangles over
+	:param length_unit: of the file: "m", "cm", "mm" or "um"; see also :meth:`Mesh.scaled`
+	:param regions: names of the groups or sets that become regions, for files in which they overlap; all when left
+		out
+	:raises ValueError: no such file, a damaged one, other cells than plane triangles, a bad mesh, sets that
+		overlap, unknown unit or region
 	"""
-	path = os.fspath(path)
+	from ..packing import _unit
+	unit, path = _unit(length_unit), os.fspath(path)
 	if not os.path.isfile(path):
 		raise ValueError(f"mesh file {path!r} does not exist")
 	if path.endswith(".msh"):
 		_check_gmsh_text(path)
-	data = _read_with_meshio(path)
+	if path.lower().endswith(".inp"):
+		data = abaqus.read(path)
+		points, triangles, groups, preferred = data.points, data.triangles, data.sets, data.sections
+	else:
+		data = _read_with_meshio(path)
+		points, preferred = np.asarray(data.points, dtype=float), []
+		triangles, blocks = _triangles(data, path)
+		groups = _groups(data, blocks, len(triangles))
 
-	planar = _plane(np.asarray(data.points, dtype=float), path)
-	others = sorted({block.type for block in data.cells} - {"triangle", "line", "vertex"})
-	if others:
-		hint = "; use triangles of first order" if any(name.startswith(("triangle", "line")) for name in others) else "; split them into triangles"
-		raise ValueError(f"{path!r} has cells of type {', '.join(others)}; only plane triangles can be used{hint}")
-	blocks = [i for i, block in enumerate(data.cells) if block.type == "triangle"]
-	if not blocks:
+	if len(triangles) == 0:
 		raise ValueError(f"{path!r} has no triangles (in Gmsh: generate the 2D mesh, and put the surface in a physical group or set Mesh.SaveAll)")
-	triangles = np.vstack([data.cells[i].data for i in blocks]).astype(np.int64)
+	planar = _plane(points * unit, path)
 	if triangles.min() < 0 or triangles.max() >= len(planar):
 		raise ValueError(f"{path!r} has a triangle with node {triangles.max()}, but only {len(planar)} nodes; the file is damaged")
 	used, renumbered = np.unique(triangles, return_inverse=True)
-	regions, names = _regions(data, blocks, len(triangles))
 	try:
-		return Mesh(planar[used], renumbered.reshape(-1, 3), regions, names, orient=orient).validate()
+		numbers, names = _regions(groups, preferred, len(triangles), regions)
+		return Mesh(planar[used], renumbered.reshape(-1, 3), numbers, names, orient=orient).validate()
 	except ValueError as error:
 		raise ValueError(f"{path!r}: {error}") from None
 
@@ -150,19 +163,98 @@ def _plane(points, path):
 	raise ValueError(f"{path!r} is not in the x-y plane: z goes from {low:g} to {high:g} m; {axis}")
 
 
-def _regions(data, blocks, count):
-	"""Region number of each triangle, and names."""
-	titles = {int(number): name for name, (number, dimension) in data.field_data.items() if dimension == 2}
-	if "gmsh:physical" in data.cell_data:
-		numbers = np.concatenate([data.cell_data["gmsh:physical"][i] for i in blocks]).astype(int)
-		groups = [number for number in sorted(set(numbers.tolist())) if number != 0]
-		regions = np.zeros(count, dtype=np.int32)
-		for region, number in enumerate(groups, start=1):
-			regions[numbers == number] = region
-		return regions, ("", *(titles.get(number, f"physical {number}") for number in groups))
-	regions, names = np.zeros(count, dtype=np.int32), [""]
-	for key, values in data.cell_data.items():
-		if key.startswith(_REGION + ":"):
-			names.append(unquote(key[len(_REGION) + 1:]))
-			regions[np.concatenate([values[i] for i in blocks]).astype(int) != 0] = len(names) - 1
-	return regions, tuple(names)
+def _triangles(data, path):
+	"""Triangles (m, 3) of what meshio has read, and the numbers of the blocks of cells that they come from."""
+	others = sorted({block.type for block in data.cells} - {"triangle", "line", "vertex"})
+	if others:
+		hint = "; use triangles of first order" if any(
+			name.startswith(("triangle", "line")) for name in others
+		) else "; split them into triangles"
+		raise ValueError(
+			f"{path!r} has cells of type {', '.join(others)}; only plane triangles can be used{hint}"
+		)
+	blocks = [i for i, block in enumerate(data.cells) if block.type == "triangle"]
+	return np.vstack([data.cells[i].data for i in blocks] or [np.empty((0, 3))]).astype(np.int64), blocks
+
+
+def _groups(data, blocks, count):
+	"""Groups of triangles in what meshio has read: rows of triangles by name."""
+	whole = {
+		key: np.concatenate([values[i] for i in blocks]).astype(int) for key,
+		values in data.cell_data.items() if key.startswith(_NUMBERED) and blocks
+	}
+	if "gmsh:physical" in whole:
+		titles = {int(number): name for name, (number, dimension) in data.field_data.items() if dimension == 2}
+		numbers, groups = whole["gmsh:physical"], {}
+		for number in sorted(set(numbers.tolist()) - {0}):
+			name = titles.get(number, f"physical {number}")
+			groups[name] = np.concatenate(
+				[groups.get(name, []), np.flatnonzero(numbers == number)]
+			).astype(int)
+		return groups
+	groups = {
+		unquote(key[len(_REGION) + 1:]): np.flatnonzero(values) for key,
+		values in whole.items() if key.startswith(_REGION + ":")
+	}
+	first = np.cumsum([0] + [len(data.cells[i].data) for i in blocks])
+	for name, members in data.cell_sets.items():
+		rows = [
+			np.asarray(members[i], dtype=int) + start for i,
+			start in zip(blocks, first) if members[i] is not None
+		]
+		if not name.startswith("gmsh:") and sum(map(len, rows)):
+			groups[name] = np.concatenate(rows)
+	if not groups:
+		for key in _MATERIALS:
+			numbers = sorted(set(whole.get(key, np.zeros(0, dtype=int)).tolist()))
+			if len(numbers) > 1:
+				return {
+					f"material {number}": np.flatnonzero(whole[key] == number) for number in numbers
+				}
+	return groups
+
+
+def _regions(groups, preferred, count, wanted):
+	"""Region number of each triangle, and names, from groups of triangles.
+
+	:param preferred: groups that count where groups overlap
+	:param wanted: names of the groups to take, or None
+	"""
+	if wanted is not None:
+		missing = [name for name in wanted if name not in groups]
+		if isinstance(wanted, str) or missing:
+			raise ValueError(
+				f"regions = {wanted!r}: give a list of names of the file's groups of triangles, which "
+				f"are {', '.join(map(repr, groups)) or 'none'}"
+			)
+		chosen = {name: groups[name] for name in wanted}
+	else:
+		chosen = groups
+		if _overlap(chosen, count):
+			# a set of all elements says nothing
+			chosen = {name: rows for name, rows in groups.items() if len(rows) < count} or groups
+		if _overlap(chosen, count) and preferred:
+			chosen = {name: groups[name] for name in preferred}
+	shared = _overlap(chosen, count)
+	if shared:
+		triangle, names = shared
+		raise ValueError(
+			f"triangle {triangle} (counted from 0) belongs to the sets {', '.join(map(repr, names))}, and "
+			"can have one region only; say which sets become regions: "
+			f"read(…, regions=[…]); the file has {', '.join(map(repr, groups))}"
+		)
+	regions = np.zeros(count, dtype=np.int32)
+	for number, rows in enumerate(chosen.values(), start=1):
+		regions[rows] = number
+	return regions, ("", *chosen)
+
+
+def _overlap(groups, count):
+	"""The first triangle that is in more than one group, and their names; None if there is none."""
+	times = np.zeros(count, dtype=int)
+	for rows in groups.values():
+		times[rows] += 1
+	if (times < 2).all():
+		return None
+	triangle = int(np.flatnonzero(times > 1)[0])
+	return triangle, [name for name, rows in groups.items() if triangle in rows]

@@ -1,12 +1,14 @@
 # GPL v2 or later, see LICENSE.
 """The mesh itself: nodes, triangles, regions, and what follows from them."""
+import math
+import numbers
 from dataclasses import InitVar, dataclass
 from functools import cached_property
 
 import numpy as np
 
 from .. import _mesh
-from . import checks
+from . import checks, sides
 from .outline import inside, ring
 from .quality import Quality
 
@@ -114,27 +116,44 @@ class Mesh:
 	def boundary(self, where=None):
 		"""Sorted indices of nodes on the border.
 
-		:param where: a side of the bounding box ("top", "bottom", "left", "right"), or a function of the arrays x, y [m] of border nodes that says
-			which of them to take; all when left out
+		:param where: a side ("top", "bottom", "left", "right"; it may be uneven or slant by 0.3 of an edge, see
+			:func:`sides.side`), or a function of the arrays x, y [m] of border nodes that says which of
+				them to take; all when left out
+		:raises ValueError: unknown side, no such side because the border is round, slanted or rough there, a
+			function that gives something else or finds no node
 		"""
 		nodes = np.unique(self.boundary_edges())
 		if where is None:
 			return nodes
-		x, y = self.nodes[nodes].T
-		sides = {"left": (x, x.min()), "right": (x, x.max()), "bottom": (y, y.min()), "top": (y, y.max())}
-		if callable(where):
-			chosen = np.asarray(where(x, y))
-			if chosen.shape != x.shape or chosen.dtype != bool:
+		if not callable(where):
+			if not isinstance(where, str) or where not in sides.SIDES:
 				raise ValueError(
-					f"boundary(): the function must turn the arrays x, y ({len(x)} values) into as many true/false values, it "
-					f"gave {chosen.dtype} of shape {chosen.shape}; combine conditions with & and |, not with and/or"
+					f"boundary(): unknown side {where!r}; use one of {', '.join(sides.SIDES)}, or "
+					"a function of x and y"
 				)
-		elif where in sides:
-			values, limit = sides[where]
-			chosen = np.abs(values - limit) <= 1e-9 * np.ptp(self.nodes, axis=0).max()
-		else:
-			raise ValueError(f"boundary(): unknown side {where!r}; use one of {', '.join(sides)}, or a function of x and y")
+			return sides.side(self, where)
+		x, y = self.nodes[nodes].T
+		chosen = np.asarray(where(x, y))
+		if chosen.shape != x.shape or chosen.dtype != bool:
+			raise ValueError(
+				f"boundary(): the function must turn the arrays x, y ({len(x)} values) into as many "
+				"true/false values, it "
+				f"gave {chosen.dtype} of shape {chosen.shape}; combine conditions with & and |, not "
+				"with and/or"
+			)
+		if not chosen.any():
+			raise ValueError(
+				f"boundary(): the function is true at none of the {len(x)} nodes of the border, which "
+				f"spans x from {x.min():.6g} to {x.max():.6g} m and y from "
+				f"{y.min():.6g} to {y.max():.6g} m; compare with a tolerance, such as np.abs(y - 0.1) "
+				"< 1e-6"
+			)
 		return nodes[chosen]
+
+	def border_between(self, nodes):
+		"""(b, 2) those of :meth:`boundary_edges` both of whose ends are among the nodes with these indices."""
+		edges = self.boundary_edges()
+		return edges[np.isin(edges, nodes).all(axis=1)]
 
 	# ---- regions ----
 
@@ -158,6 +177,16 @@ class Mesh:
 	def flipped(self):
 		"""The same mesh with clockwise triangles turned over."""
 		return Mesh(self.nodes, self.triangles, self.regions, self.region_names, orient=True)
+
+	def scaled(self, factor):
+		"""The same mesh with all lengths times a factor: ``mesh.scaled(1e-3)`` for one that was drawn in
+		millimetres.
+
+		:raises ValueError: the factor is not a positive, finite number
+		"""
+		if not isinstance(factor, numbers.Real) or not 0 < factor < math.inf:
+			raise ValueError(f"scaled(): factor = {factor!r} must be a positive, finite number [-]")
+		return Mesh(self.nodes * factor, self.triangles, self.regions, self.region_names)
 
 	def reordered(self):
 		"""The same mesh renumbered for locality in memory.

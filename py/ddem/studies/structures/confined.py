@@ -111,7 +111,7 @@ def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0
 def _middle(block):
 	"""The node on the bottom that is held laterally while the ends slide."""
 	bottom = block.mesh.boundary("bottom")
-	return block.node_ids[bottom[np.argmin(np.abs(block.mesh.nodes[bottom, 0] - WIDTH / 2))]][None]
+	return block.node_ids[[bottom[np.argmin(np.abs(block.mesh.nodes[bottom, 0] - WIDTH / 2))]]]
 
 
 def _pressing(block, pressure):
