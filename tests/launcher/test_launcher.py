@@ -1,6 +1,5 @@
 # GPL v2 or later, see LICENSE.
 # The launcher as its users see it.  Runs outside YADE, in an environment where YADE is installed.
-import fcntl
 import os
 import pathlib
 import signal
@@ -138,14 +137,3 @@ def test_ctrl_c_stops_the_script(script):
 			break
 	os.killpg(process.pid, signal.SIGINT)
 	assert process.wait() != 0
-
-
-def test_second_launcher_waits_for_the_first_and_says_so():
-	cache = pathlib.Path(os.environ.get('XDG_CACHE_HOME') or pathlib.Path.home() / '.cache') / 'yade-ddem'
-	with open(cache / 'lock', 'a') as lock:
-		fcntl.flock(lock, fcntl.LOCK_EX)
-		waiting = subprocess.Popen([DDEM, 'shell', 'true'], stderr=subprocess.PIPE, text=True)
-		assert 'another scripts/ddem is setting up' in waiting.stderr.readline()
-		assert waiting.poll() is None
-		fcntl.flock(lock, fcntl.LOCK_UN)
-		assert waiting.wait() == 0
