@@ -4,6 +4,7 @@
 #include <pkg/ddem/DeformableNode.hpp>
 #include <pkg/ddem/DeformableTimeStepper.hpp>
 #include <pkg/ddem/Onlookers.hpp>
+#include <pkg/ddem/SingleProcess.hpp>
 
 #include <boost/python/numpy.hpp>
 
@@ -175,6 +176,7 @@ void DeformableEngine::checkEngines()
 	for (const auto& e : scene->engines)
 		now.push_back(e.get());
 	if (now == checkedEngines) return;
+	requireSingleProcess(*scene); // mpy adds engines where it divides a scene
 	ofCurrentScene(); // exactly one
 	long mine = -1, resetter = -1, interactions = -1;
 	for (std::size_t i = 0; i < now.size(); i++) {
