@@ -1,6 +1,13 @@
 # GPL v2 or later, see LICENSE.
 # Options and markers shared by all Python tests.
+import hypothesis
 import pytest
+
+# Slow or fast, a machine must give the same result.
+hypothesis.settings.register_profile(
+	'any machine', deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.load_profile('any machine')
 
 
 def pytest_addoption(parser):

@@ -35,12 +35,12 @@ Law2_ScGeom_BondedPhys_MohrCoulomb* BondedInteractionLoop::law() const
 
 bool BondedInteractionLoop::oneByOne() const
 {
-	return !callbacks.empty() || loopOnSortedInteractions || ompThreads > 0 || scene->isPeriodic || divided;
+	return !callbacks.empty() || loopOnSortedInteractions || ompThreads > 0 || scene->isPeriodic;
 }
 
 void BondedInteractionLoop::action()
 {
-	if (knownScene != scene) divided = false;
+	process.require(*scene);
 	Law* const bondLaw = law();
 	if (!bondLaw || oneByOne()) {
 		const std::lock_guard<std::mutex> lock(busy);
@@ -54,7 +54,7 @@ void BondedInteractionLoop::action()
 			locateHeld();
 		}
 	}
-	if (known < 0 || divided) {
+	if (known < 0) {
 		InteractionLoop::action();
 		return;
 	}
@@ -148,7 +148,6 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 {
 	writeBack();
 	held.clear();
-	divided = scene->subdomain != 0;
 	for (const auto& I : *scene->interactions) {
 		auto* phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
 		if (phys && phys->bonded) held.push_back({ I, phys });
@@ -172,7 +171,6 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 		const Interaction& I = *held[j].interaction;
 		const BondedPhys&  phys = *held[j].phys;
 		const std::int32_t first = placeOf(I.getId1()), second = placeOf(I.getId2());
-		divided |= (*scene->bodies)[I.getId1()]->subdomain != 0 || (*scene->bodies)[I.getId2()]->subdomain != 0;
 		system.add(first, second, phys.bond(static_cast<const ScGeom&>(*I.geom)), phys.strength());
 		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
 		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress }) != ddem::BondFailure::None)

@@ -32,8 +32,10 @@ public:
 		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind). After O.pause() of a run in the background they may be a few steps old until "
 		":yref:`bonds<Law2_ScGeom_BondedPhys_MohrCoulomb.bonds>` is called. Stiffnesses and radii changed by hand are taken up after such a look.\n\n"
 		"Bonds are computed one by one where the base class must be asked: with :yref:`callbacks<InteractionLoop.callbacks>`, "
-		":yref:`loopOnSortedInteractions<InteractionLoop.loopOnSortedInteractions>`, a number of threads of its own, periodic boundaries, or bodies of several MPI subdomains.\n\n"
-		"Errors: RuntimeError naming the bond where forces become infinite or not a number."
+		":yref:`loopOnSortedInteractions<InteractionLoop.loopOnSortedInteractions>`, "
+		"a number of threads of its own, or periodic boundaries.\n\n"
+		"Errors: RuntimeError naming the bond where forces become infinite or not a number, "
+		"and under mpirun with several processes."
 	);
 	// clang-format on
 
@@ -68,7 +70,7 @@ private:
 	long                                  known  = -1; ///< BondedPhys::bondsMade when they were collected
 	const Scene*                          knownScene = nullptr;
 	bool                                  exposed = true;
-	bool                                  divided = false; ///< bodies belong to several MPI subdomains
+	SingleProcess                         process;
 	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written back: Python may ask at any time
 	std::chrono::steady_clock::time_point lastExposure {};
 };

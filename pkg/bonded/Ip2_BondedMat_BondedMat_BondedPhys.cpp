@@ -1,6 +1,7 @@
 // GPL v2 or later, see LICENSE.
 // From two materials to a contact or a bond.
 #include <pkg/bonded/Ip2_BondedMat_BondedMat_BondedPhys.hpp>
+#include <pkg/ddem/SingleProcess.hpp>
 
 #include <sstream>
 
@@ -91,6 +92,7 @@ void Ip2_BondedMat_BondedMat_BondedPhys::go(
 void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs)
 {
 	Scene& current = *Omega::instance().getScene();
+	requireSingleProcess(current);
 	if (current.isPeriodic) throw std::invalid_argument("bonds across periodic boundaries are not supported: set O.periodic = False");
 	std::set<std::pair<int, int>> seen;
 	for (const Vector2i& pair : pairs) { // all checks come first, so that nothing is half-built on error

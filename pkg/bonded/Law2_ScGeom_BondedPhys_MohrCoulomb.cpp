@@ -29,6 +29,7 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::postLoad(Law2_ScGeom_BondedPhys_MohrCou
 	if (convention != "consistent" && convention != "esys")
 		throw std::invalid_argument("Law2_ScGeom_BondedPhys_MohrCoulomb: convention = '" + convention + "' is unknown; use 'consistent' or 'esys'");
 	esys = convention == "esys";
+	requireSingleProcess(); // in words here: what is thrown in the loop of InteractionLoop ends the program
 }
 
 Vector3r Law2_ScGeom_BondedPhys_MohrCoulomb::branchOf(const Interaction& I) const
@@ -39,6 +40,7 @@ Vector3r Law2_ScGeom_BondedPhys_MohrCoulomb::branchOf(const Interaction& I) cons
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
+	process.require(*scene); // an InteractionLoop offers no other place to look
 	auto& phys = static_cast<BondedPhys&>(*iPhys);
 	if (!phys.bonded) return advanceContact(*I);
 	if (esys) { // ESyS-Particle tests the loads of the last step

@@ -6,6 +6,7 @@
 #include <pkg/bonded/BondedPhys.hpp>
 #include <pkg/bonded/BrokenBond.hpp>
 #include <pkg/bonded/kernel/BondSystem.hpp>
+#include <pkg/ddem/SingleProcess.hpp>
 
 #include <mutex>
 
@@ -47,7 +48,8 @@ public:
 		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* (dissipated) [J].\n\n"
 		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast as one by one in an :yref:`InteractionLoop`.\n\n"
 		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as well, its relative rotations are not used.\n\n"
-		"**Saving.** Bonds and the list of broken bonds are saved with the scene. **Limits:** no periodic boundaries for bonds.",
+		"**Saving.** Bonds and the list of broken bonds are saved with the scene. "
+		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it refuses to be made, loaded or run.",
 		((std::string,convention,"consistent",Attr::triggerPostLoad,"'consistent', or 'esys' for the bonds and contacts of ESyS-Particle; to be chosen before the first step"))
 		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),"Records of broken bonds, in order of step and ids")),
 		/*ctor*/,
@@ -72,6 +74,7 @@ private:
 
 	bool         esys = false;
 	BondedEnergy energy;
+	SingleProcess process;
 	mutable std::mutex recording;
 };
 REGISTER_SERIALIZABLE(Law2_ScGeom_BondedPhys_MohrCoulomb);

@@ -4,6 +4,7 @@
 #include <pkg/ddem/DeformableEngine.hpp>
 #include <pkg/ddem/DeformableNode.hpp>
 #include <pkg/ddem/DeformableTimeStepper.hpp>
+#include <pkg/ddem/SingleProcess.hpp>
 
 #include <core/TimeStepper.hpp>
 
@@ -81,6 +82,7 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 	for (const auto& e : scene.engines)
 		now.push_back(e.get());
 	if (now == checked) return false;
+	requireSingleProcess(scene); // mpy adds engines where it divides a scene
 	if (scene.isPeriodic)
 		throw std::runtime_error(
 		        "deformable triangles do not feel a periodic cell: set O.periodic = False and drive the sides of the block "

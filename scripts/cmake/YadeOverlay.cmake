@@ -13,6 +13,14 @@ install(CODE "
 			file(CREATE_LINK \"\${stock}\${folder}/\${entry}\" \"\${mine}\${folder}/\${entry}\" SYMBOLIC)
 		endforeach()
 	endforeach()
+	# yade-batch starts the program in bin of its prefix, which is named like the directory of its libraries.
+	get_filename_component(program \"\${stock}\" NAME)
+	file(GLOB programs RELATIVE \"${YADE_PREFIX_DIR}/bin\" \"${YADE_PREFIX_DIR}/bin/\${program}*\")
+	file(MAKE_DIRECTORY \"${overlay}/bin\")
+	foreach(program IN LISTS programs)
+		file(CREATE_LINK \"${YADE_PREFIX_DIR}/bin/\${program}\" \"${overlay}/bin/\${program}\" SYMBOLIC)
+	endforeach()
+	file(CREATE_LINK \"${YADE_LIBRARY_SUBDIR}/py\" \"${overlay}/python\" SYMBOLIC) # for PYTHONPATH
 	message(STATUS \"Overlay prefix of links to \${stock}: ${overlay}\")
 " COMPONENT classes)
 

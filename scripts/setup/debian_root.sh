@@ -20,17 +20,20 @@ require_space() {
 	((free >= ROOT_NEEDS_MB)) || fail "$cache_dir has $free MB free, the Debian 13 environment needs $ROOT_NEEDS_MB MB (XDG_CACHE_HOME chooses another place)"
 }
 
+# packages_stamp: there once all listed packages are.
+packages_stamp() { root_stamp "packages-$(listed_packages | sha256sum | cut -c1-16)"; }
+
+root_is_ready() { [[ -f $(packages_stamp) && -z $(missing_in_root "${needed[@]}") ]]; }
+
 make_debian_root() {
-	local packages_stamp
-	packages_stamp=$(root_stamp "packages-$(listed_packages | sha256sum | cut -c1-16)")
-	[[ -f $packages_stamp ]] && return
+	[[ ! -f $(packages_stamp) ]] || return 0
 	require_space
 	say "making a Debian 13 environment with YADE in $root (once; about 3 GB, 3 minutes)"
 	if [[ ! -d $root ]]; then
 		[[ -x $(command -v debootstrap) && -f /usr/share/keyrings/debian-archive-keyring.gpg ]] || phase "installing debootstrap" install_debootstrap
 		phase "Debian 13 base system" make_base_system
 	fi
-	phase "Debian 13 packages" install_packages "$packages_stamp"
+	phase "Debian 13 packages" install_packages "$(packages_stamp)"
 }
 
 install_debootstrap() {
@@ -76,11 +79,19 @@ install_packages() {
 
 # install_needed: the packages in $needed, which are not worth having for those who never run the scripts that ask for them.
 install_needed() {
-	local package missing=()
-	for package in "${needed[@]}"; do
-		[[ $(in_root dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] || missing+=("$package")
+	local missing
+	missing=$(missing_in_root "${needed[@]}")
+	# shellcheck disable=SC2086 # one word a package
+	[[ -z $missing ]] || phase "Debian packages ${missing% }" install_more $missing
+}
+
+# missing_in_root NAME…: those of them the root lacks.
+missing_in_root() {
+	local package
+	for package in "$@"; do
+		[[ $(in_root dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == installed ]] \
+			|| printf '%s ' "$package"
 	done
-	((${#missing[@]} == 0)) || phase "Debian packages ${missing[*]}" install_more "${missing[@]}"
 }
 
 install_more() {
@@ -104,14 +115,31 @@ clear_root_apt() {
 
 # A dpkg does not inherit our lock from its apt: when only the latter was killed, it is still at work.
 wait_for_orphans() {
-	local process said=
-	for process in /proc/[0-9]*; do
-		while [[ $(cat "$process/comm" 2>/dev/null) =~ ^(dpkg|apt-get)$ && $(readlink "$process/root") == "$root" ]]; do
-			[[ $said ]] || echo "waiting for process ${process#/proc/}, which an earlier start has left behind"
-			said=yes
-			sleep 1
-		done
+	local orphan said=
+	while orphan=$(process_in_root '^(dpkg|apt-get)$') && [[ $orphan ]]; do
+		[[ $said ]] || echo "waiting for process $orphan, which an earlier start has left behind"
+		said=yes
+		sleep 1
 	done
+}
+
+# process_in_root PATTERN: number and name of one that is at work in the root and whose name fits.
+process_in_root() {
+	local process name
+	for process in /proc/[0-9]*; do
+		name=$(cat "$process/comm" 2>/dev/null) || continue
+		[[ $name =~ $1 && $(readlink "$process/root") == "$root" ]] || continue
+		echo "${process#/proc/} ($name)"
+		return
+	done
+}
+
+forget_root() {
+	local busy
+	own_environment
+	busy=$(process_in_root .)
+	[[ -z $busy ]] || fail "process $busy is at work in $root: end it first"
+	rm -rf --one-file-system "$root" "$root.unfinished"
 }
 
 # The root's apt: the archive debootstrap has used, with sources for the headers; this machine's proxies and certificates; no documentation.

@@ -17,42 +17,73 @@ choose_environment() {
 	readonly root
 }
 
-# prepare_environment: YADE, compiler, libraries, headers and the packages in $needed are there afterwards.
+# prepare_environment: YADE, compiler, libraries, headers and the packages in $needed are there afterwards, and stay
+# while the locks are held.
 prepare_environment() {
+	share_environment
+	if environment_is_ready; then return; fi
+	own_environment
+	make_environment
+	share_environment
+}
+
+environment_is_ready() {
+	find_yade_source
+	[[ $yade_source ]] || return
+	if [[ $root ]]; then root_is_ready; else [[ -z $(missing_on_host) ]]; fi
+}
+
+make_environment() {
 	if [[ $root ]]; then
 		make_debian_root
 		install_needed
-		yade_source=${YADE_SOURCE_DIR:-$(newest "$root"/usr/src/yade/yade_*.orig.tar.*)}
-		yade_source=${yade_source#"$root"}
 	else
 		install_host_packages
-		find_host_headers
+		get_host_headers
 	fi
+	find_yade_source
+}
+
+# find_yade_source: sets yade_source, the source tree or archive of this YADE, for the headers that Debian does not
+# package; empty when there is none yet.
+find_yade_source() {
+	local version
+	yade_source=${YADE_SOURCE_DIR:-}
+	if [[ ! $yade_source && $root ]]; then
+		yade_source=$(newest "$root"/usr/src/yade/yade_*.orig.tar.*)
+	elif [[ ! $yade_source ]] && version=$(host_source_version); then
+		yade_source=$(newest "$(host_headers)"/yade_*.orig.tar.* /usr/src/yade/yade_"${version%-*}".orig.tar.*)
+	fi
+	yade_source=${yade_source#"$root"}
+}
+
+host_source_version() { dpkg-query -W -f '${source:Version}' yade 2>/dev/null; }
+
+host_headers() { echo "$cache_dir/headers-$(host_source_version)"; }
+
+missing_on_host() {
+	[[ -x $(command -v dpkg-query) ]] || return 0 # not a Debian: CMake says what is missing
+	# shellcheck disable=SC2046 # one word a package
+	missing_packages $(listed_packages) "${needed[@]}"
 }
 
 install_host_packages() {
 	local missing
-	[[ -x $(command -v dpkg-query) ]] || return 0 # not a Debian: CMake says what is missing
-	# shellcheck disable=SC2046 # one word a package
-	missing=$(missing_packages $(listed_packages) "${needed[@]}")
+	missing=$(missing_on_host)
 	[[ $missing ]] || return 0
 	((EUID == 0)) || fail "these packages are missing: sudo apt-get install --no-install-recommends $missing"
 	# shellcheck disable=SC2086 # one word a package
 	phase "Debian packages" apt_get install -y --no-install-recommends $missing
 }
 
-# Debian packages no YADE headers: its source archive has them, in exactly the version of the program, over apt's chain of signatures.
-find_host_headers() {
-	local version directory
-	yade_source=${YADE_SOURCE_DIR:-}
-	[[ -z $yade_source ]] || return 0
-	version=$(dpkg-query -W -f '${source:Version}' yade 2>/dev/null) \
+# Its source archive has them, in exactly the version of the program, over apt's chain of signatures.
+get_host_headers() {
+	local version
+	find_yade_source
+	[[ ! $yade_source ]] || return 0
+	version=$(host_source_version) \
 		|| fail "this YADE is not a Debian package: name its source tree, of the same version, in the environment variable YADE_SOURCE_DIR"
-	directory=$cache_dir/headers-$version
-	yade_source=$(newest "$directory"/yade_*.orig.tar.* /usr/src/yade/yade_"${version%-*}".orig.tar.*)
-	[[ -z $yade_source ]] || return 0
-	phase "YADE's headers" fetch_host_headers "$version" "$directory"
-	yade_source=$(newest "$directory"/yade_*.orig.tar.*)
+	phase "YADE's headers" fetch_host_headers "$version" "$(host_headers)"
 }
 
 # With lists of its own below the cache: works without root, and leaves this machine's apt as it is.

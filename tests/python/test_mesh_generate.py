@@ -147,7 +147,7 @@ def test_warning_when_regular_mesh_misses_a_region():
 
 
 @given(st.integers(1, 12), st.integers(1, 12), st.floats(0.01, 100), st.floats(0.01, 100), st.sampled_from(["crossed", "alternating"]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_any_regular_mesh(nx, ny, width, height, pattern):
 	block = mesh.rectangle(width, height, nx=nx, ny=ny, pattern=pattern)
 	assert block.areas == pytest.approx(width * height / len(block.triangles), rel=1e-9)
@@ -249,7 +249,7 @@ def test_same_input_gives_the_same_mesh():
 
 
 @given(st.integers(6, 12).flatmap(lambda n: st.lists(st.floats(0.7, 1.3), min_size=n, max_size=n)), st.floats(0.1, 10), st.floats(0.05, 3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_any_convex_polygon(gaps, radius, relative_size):
 	directions = 2 * math.pi * np.cumsum(gaps) / sum(gaps)
 	corners = radius * np.column_stack([np.cos(directions), 0.8 * np.sin(directions)])
@@ -264,7 +264,7 @@ def test_any_convex_polygon(gaps, radius, relative_size):
 
 
 @given(st.integers(3, 9).flatmap(lambda n: st.lists(st.tuples(st.floats(0.5, 1.5), st.floats(0.3, 1)), min_size=n, max_size=n)), st.floats(0.1, 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_any_star_shaped_polygon(arms, size):
 	# Corners as sharp and as deep as they come: no angle is promised, but the mesh is a proper one.
 	directions = 2 * math.pi * np.cumsum([gap for gap, _ in arms]) / sum(gap for gap, _ in arms)

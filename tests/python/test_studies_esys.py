@@ -147,7 +147,7 @@ def test_run_that_ends_early_is_no_success(setup, tmp_path, programs):
 
 
 def test_interrupted_run_leaves_no_process(setup, tmp_path, programs):
-	programs("echo $$ > process; echo step 1; exec sleep 60")
+	programs("echo $$ > process; echo step 1; exec sleep infinity")
 
 	def interrupt(step):
 		raise KeyboardInterrupt

@@ -6,13 +6,14 @@ import re
 import shutil
 import signal
 import subprocess
-import time
 
 import pytest
 import script_modules
 
 from yade.ddem.series import Series
 from yade.ddem.studies.campaign import FINISHED
+
+from waiting import until
 
 
 @pytest.fixture
@@ -91,16 +92,14 @@ def test_a_small_study(tmp_path):
 	"""Interrupted after its first run, started again, and once more when all is there."""
 	folder = tmp_path / "study"
 	with start(folder, "--jobs", "1") as process:
-		while not list(folder.glob(f"runs/*/{FINISHED}")):
-			assert process.poll() is None, process.stdout.read()
-			time.sleep(0.1)
+		until(lambda: list(folder.glob(f"runs/*/{FINISHED}")) or process.poll() is not None)
 		os.kill(process.pid, signal.SIGTERM)
-		text = process.communicate(timeout=60)[0]
+		text = process.communicate()[0]
 	assert process.returncode == 130 and "goes on from what is finished" in text
 	first = {path.parent.name: path.stat().st_mtime_ns for path in folder.glob(f"runs/*/{FINISHED}")}
 	assert 1 <= len(first) < 4
 	with start(folder) as process:
-		text = process.communicate(timeout=300)[0]
+		text = process.communicate()[0]
 	assert process.returncode == 0, text
 	for name, age in first.items():
 		assert (folder / "runs" / name / FINISHED).stat().st_mtime_ns == age
@@ -119,5 +118,5 @@ def test_a_small_study(tmp_path):
 	assert series.last("time") == pytest.approx(2.5e-4, rel=0.01)
 	assert series["stress_median"].max() == pytest.approx(1e6 * ucs["paper"], rel=0.01)  # one packing
 	with start(folder) as process:
-		text = process.communicate(timeout=60)[0]
+		text = process.communicate()[0]
 	assert process.returncode == 0 and text.count("finished before") == 4

@@ -6,12 +6,13 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
 import script_modules
 
 from yade.ddem.studies import virtualtest
+
+from waiting import until
 
 SCRIPT = script_modules.path("calibrate")
 SMALL = ["--model", "deformable", "--size", "0.025", "--velocity", "2"]
@@ -173,19 +174,20 @@ def test_interrupted_run_ends_its_processes_and_goes_on(tmp_path, number):
 	command = [shutil.which("yade"), "-n", "-x", SCRIPT, *AIM, *SMALL, "--jobs", "2", "--out", str(tmp_path / "out")]
 	environment = {**os.environ, "TMPDIR": str(tmp_path)}  # evaluations are found by it
 	process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
-	for _ in range(600):
-		if lines(tmp_path / "out" / "evaluations.jsonl") and processes(f"{tmp_path}/ddem-"):
-			break
+
+	def at_work():
 		assert process.poll() is None, process.communicate()
-		time.sleep(0.05)
+		return lines(tmp_path / "out" / "evaluations.jsonl") and processes(f"{tmp_path}/ddem-")
+
+	until(at_work)
 	process.send_signal(number)
-	output, errors = process.communicate(timeout=60)
+	output, errors = process.communicate()
 	assert process.returncode == 130, errors
 	kept = lines(tmp_path / "out" / "evaluations.jsonl")
 	assert f"Interrupted after {len(kept)} evaluations; the same command goes on from there." in output
 	assert "Traceback" not in errors
 	assert all(record["error"] is None for record in kept)
 	assert processes(f"{tmp_path}/ddem-") == []
-	done = subprocess.run(command, capture_output=True, text=True, timeout=600, env=environment)
+	done = subprocess.run(command, capture_output=True, text=True, env=environment)
 	assert done.returncode == 0, done.stderr
 	assert f"and {len(kept)} from the file" in done.stdout

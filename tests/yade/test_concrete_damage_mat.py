@@ -74,7 +74,7 @@ def test_a_triangle_follows_the_material_point(path):
 
 
 @given(legs=st.lists(st.tuples(*[st.integers(-3, 3)] * 3, st.integers(100, 400)), min_size=1, max_size=3), exponent=st.integers(-24, -14), off=st.sets(st.sampled_from(EFFECTS)))
-@settings(deadline=None, max_examples=15, derandomize=True)
+@settings(max_examples=15, derandomize=True)
 def test_a_triangle_follows_the_material_point_on_random_paths_with_any_effects(legs, exponent, off):
 	O.reset()
 	material = ConcreteDamageMat(**{name: False for name in off})

@@ -96,12 +96,15 @@ def test_many_failures_are_cut_short(tmp_path, yade):
 
 
 def test_interruption_ends_what_is_running(tmp_path, yade):
-	"""Two runs at the same time: one would last a minute; when the other is finished, the user presses Ctrl-C."""
+	"""Two runs at the same time: one would last for ever; when the other is finished, the user presses Ctrl-C."""
 
 	def press(*_):
 		raise KeyboardInterrupt
 
-	program = yade("case $2 in 1) echo $$ > $out/pid; exec sleep 60;; esac; while ! test -e $out/../seed1/pid; do sleep 0.01; done")
+	program = yade(
+		"case $2 in 1) echo $$ > $out/pid; exec sleep infinity;; esac; "
+		"while ! test -e $out/../seed1/pid; do sleep 0.01; done"
+	)
 	running = campaign(tmp_path, program, jobs=2, report=press)
 	with pytest.raises(KeyboardInterrupt):
 		running.run()

@@ -48,7 +48,7 @@ def small(tmp_path_factory):
 	"""What a user gets on two threads: the folder and the text on the terminal."""
 	folder = tmp_path_factory.mktemp("small")
 	command = [shutil.which("yade"), "-n", "-x", script_modules.path("ucs_bonded"), "--convention", "esys", "--threads", "2", *SMALL]
-	done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=300)
+	done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
 	assert done.returncode == 0, done.stderr
 	return folder / "out" / "ucs_bonded", done.stdout
 

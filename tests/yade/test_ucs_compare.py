@@ -43,7 +43,8 @@ def run(job, monkeypatch, *arguments):
 def quick(tmp_path_factory):
 	"""What a user gets from the quick preset: the folder, and the text on the terminal."""
 	folder = tmp_path_factory.mktemp("quick")
-	done = subprocess.run([shutil.which("yade"), "-n", "-x", os.path.abspath(SCRIPT)], cwd=folder, capture_output=True, text=True, timeout=600)
+	command = [shutil.which("yade"), "-n", "-x", os.path.abspath(SCRIPT)]
+	done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
 	assert done.returncode == 0, done.stderr
 	return folder / "out" / "ucs_compare", done.stdout
 
