@@ -3,7 +3,6 @@
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/ViscousBodyDamping.hpp>
 
-#include <pkg/ddem/Onlookers.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 #include <algorithm>
@@ -219,9 +218,10 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 	}
 	applyLoads();
 	if (scene->trackEnergy) bondLaw.bookBondEnergy(stored - lost);
-	if (somebodyMayLook(*scene, *this, lastExposure, neverLooksAtBonds)) {
+	if (onlooker(*scene, *this, showings, neverLooksAtBonds) != Onlooker::Nobody) {
+		showings.begin();
 		writeBack();
-		lastExposure = std::chrono::steady_clock::now();
+		showings.end();
 	}
 }
 

@@ -4,7 +4,7 @@
 
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 
-#include <chrono>
+#include <pkg/ddem/Onlookers.hpp>
 
 namespace yade {
 
@@ -72,7 +72,7 @@ private:
 	bool                                  exposed = true;
 	SingleProcess                         process;
 	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written back: Python may ask at any time
-	std::chrono::steady_clock::time_point lastExposure {};
+	Showings                              showings;
 };
 REGISTER_SERIALIZABLE(BondedInteractionLoop);
 

@@ -226,13 +226,13 @@ void DeformableEngine::action()
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
-	exposed = somebodyMayLook(*scene, *this, lastExposure, EngineOrder::neverLooks);
-	if (exposed) {
-		sample->exposeAll();
-		if (scene->forces.lastReset == scene->iter) sample->exposeReactions(scene->forces);
-		lastExposure = std::chrono::steady_clock::now();
-	} else
-		sample->exposeConstrained();
+	const Onlooker who = onlooker(*scene, *this, showings, EngineOrder::neverLooks);
+	exposed            = who == Onlooker::Script;
+	if (who == Onlooker::Nobody) return sample->exposeConstrained();
+	showings.begin();
+	sample->exposeAll();
+	if (scene->forces.lastReset == scene->iter) sample->exposeReactions(scene->forces);
+	showings.end();
 }
 
 void DeformableEngine::stopAtNotFinite()

@@ -4,9 +4,8 @@
 
 #include <pkg/ddem/EngineOrder.hpp>
 #include <pkg/ddem/Exposure.hpp>
+#include <pkg/ddem/Onlookers.hpp>
 #include <pkg/ddem/TimeStepGuard.hpp>
-
-#include <chrono>
 
 namespace yade {
 
@@ -53,7 +52,7 @@ public:
 		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind).\n\n"
 		"Place it after the engines that add forces and after :yref:`ForceResetter`. Results are the same, bit by bit, for any number of threads.\n\n"
 		"Errors: a time step above :yref:`criticalTimeStep<DeformableEngine.criticalTimeStep>`, engines in the wrong order, unusable triangles and a state that is not finite stop the run with the body, its place and the way out.\n\n"
-		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old; after O.pause(), reading anything from the engine brings it up to date.",
+		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old (older in large samples, so that showing it takes a twentieth of the time at most); after O.pause(), reading anything from the engine brings it up to date.",
 		((std::string,rotation,"cosserat",Attr::triggerPostLoad,"How elements follow rotation: 'cosserat' (cores rotate, tied by :yref:`rotationStiffness<DeformableElastMat.rotationStiffness>`), 'corotational' (frame from the polar decomposition of the vertices' deformation, no rotational inertia) or 'none' (small rotations, cheapest)."))
 		((Real,vertexShare,1./6,Attr::triggerPostLoad,"Share :math:`\\alpha` [-] of a triangle's mass that sits in its vertices, a third of it in each; below 1/4 with 'cosserat'. Governs the stable time step."))
 		((Vector3r,gravity,Vector3r::Zero(),,"Acceleration [m/s²] of nodes and cores; the z component is ignored. Zero: that of :yref:`NewtonIntegrator.gravity` where O.engines has one."))
@@ -93,7 +92,7 @@ private:
 	TimeStepGuard                         guard;
 	bool                                  stale   = true; ///< settings changed since the arrays were built
 	bool                                  virgin  = false; ///< the arrays were built from State alone, and no step was made
-	std::chrono::steady_clock::time_point lastExposure {};
+	Showings                              showings;
 	int                                   ids_[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
 
 	ddem::RotationTreatment rotationTreatment() const;

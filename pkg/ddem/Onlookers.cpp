@@ -5,7 +5,8 @@ namespace yade {
 
 namespace {
 
-	constexpr auto longestUnseen = std::chrono::milliseconds(200); ///< state is no older than this for other threads while a run goes on
+	constexpr auto shortestUnseen = std::chrono::milliseconds(200); ///< other threads see no older state where that is cheap
+	constexpr int  shareOfTime    = 20;                             ///< a showing may take one part in so many of the time between
 
 	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides; early by `slack` of real time rather than late.
 	bool isDue(const PeriodicEngine& e, long iter, Real time, Real slack)
@@ -19,14 +20,19 @@ namespace {
 
 } // namespace
 
-bool somebodyMayLook(const Scene& scene, const Engine& self, std::chrono::steady_clock::time_point lastExposure, bool (*neverLooks)(const Engine&))
+bool Showings::due() const
+{
+	const auto since = std::chrono::steady_clock::now() - finished, cost = finished - started;
+	return since > shortestUnseen && since > shareOfTime * cost;
+}
+
+Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&))
 {
 	const long next = scene.iter + 1;
 	const Real then = scene.time + scene.dt;
-	if (!Omega::instance().isRunning()) return true; // O.step, or a pause was asked for
-	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return true;
-	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return true;
-	if (std::chrono::steady_clock::now() - lastExposure > longestUnseen) return true;
+	if (!Omega::instance().isRunning()) return Onlooker::Script; // O.step, or a pause was asked for
+	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return Onlooker::Script;
+	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return Onlooker::Script;
 	bool before = true; // engines before this one act next in the next step
 	for (const auto& e : scene.engines) {
 		if (e.get() == &self) {
@@ -35,9 +41,9 @@ bool somebodyMayLook(const Scene& scene, const Engine& self, std::chrono::steady
 		}
 		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
-		if (!periodic || isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) return true;
+		if (!periodic || isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) return Onlooker::Script;
 	}
-	return false;
+	return showings.due() ? Onlooker::OtherThreads : Onlooker::Nobody;
 }
 
 } // namespace yade

@@ -8,12 +8,30 @@
 
 namespace yade {
 
-/** Whether state that an engine computes in arrays of its own must be visible after this step: at the end of a run, for engines that act before its next turn and may look,
- * and now and then for other threads.
+/// Who may look at State before an engine's next turn.
+enum class Onlooker {
+	Nobody,
+	OtherThreads, ///< a window, or a shell beside a run: they see a picture now and then, and change nothing
+	Script        ///< the end of a run, or an engine that may read and change bodies
+};
+
+/// When State was last shown to other threads, and what that took: a picture may cost a small part of the time only.
+class Showings {
+public:
+	/// \returns whether it is time for the next.
+	bool due() const;
+	void begin() { started = std::chrono::steady_clock::now(); }
+	void end() { finished = std::chrono::steady_clock::now(); }
+
+private:
+	std::chrono::steady_clock::time_point started {}, finished {};
+};
+
+/** Who may look at state that an engine computes in arrays of its own, after this step.
  * \param self the engine; where it stands in O.engines says who acts in this step and who in the next
- * \param lastExposure when the state was last made visible
+ * \param showings when State was last made visible
  * \param neverLooks engines that are known not to look
  */
-bool somebodyMayLook(const Scene& scene, const Engine& self, std::chrono::steady_clock::time_point lastExposure, bool (*neverLooks)(const Engine&));
+Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&));
 
 } // namespace yade

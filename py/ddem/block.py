@@ -10,6 +10,7 @@ from yade import Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, 
 
 from . import crackband
 from .arrays import BodyIds, fixed
+from .field import Field
 
 
 def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
@@ -65,8 +66,8 @@ def time_step(safety=0.8):
 	"""
 	if not 0 < safety <= 1:
 		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
-	engine = _engine_if_any()
-	return safety * (engine.criticalTimeStep() if engine else DeformableEngine().timeStepOfScene())
+	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
+	return safety * (min(e.criticalTimeStep() for e in engines) if engines else DeformableEngine().timeStepOfScene())
 
 
 class Block:
@@ -142,6 +143,16 @@ class Block:
 		self._set_motion(nodes, cores, 0.5 * (gradient[:, 0, 1] - gradient[:, 1, 0]), held_too=True)
 
 	@property
+	def core_positions(self):
+		"""Positions of the triangles' cores (m, 2) [m]."""
+		return self._points("core", "Position")
+
+	@property
+	def core_velocities(self):
+		"""Velocities of the triangles' cores (m, 2) [m/s]."""
+		return self._points("core", "Velocity")
+
+	@property
 	def velocity(self):
 		"""Velocity (vx, vy) of the centre of mass [m/s]: the mean over nodes and cores, weighted with their
 		masses.
@@ -189,7 +200,7 @@ class Block:
 	@property
 	def node_forces(self):
 		"""Internal forces on the nodes in the last step (n, 2) [N]; minus the reaction where a node is held."""
-		engine = _engine("node_forces")
+		engine = self._engine("node_forces")
 		return fixed(engine.array("nodeForce")[self._rows(engine, "node")])
 
 	@property
@@ -215,7 +226,22 @@ class Block:
 	@property
 	def damage(self):
 		"""Damage η/η_max of the triangles (m,) [-], mean of their sub-elements."""
-		return fixed(self._values("damage", "damage").mean(axis=1))
+		engine = self._engine("damage")
+		rows = self._rows(engine, "core")
+		return Field(engine.values("damage")[rows].mean(axis=1), engine.values("tilePlace")[rows])
+
+	def field(self, name):
+		"""What the laws of the triangles remember, by its name (:yref:`DeformableEngine.fields`): (m, 3), or (m, 3, 4) in global axes for
+		tensors; zero where a triangle's law has no such field.
+
+		:raises ValueError: a name that no law of the sample has (naming those there are).
+		"""
+		return self._values(f"field('{name}')", name)
+
+	@property
+	def fields(self):
+		"""Names of what the laws of the engine's triangles remember, with unit and components: a list of tuples."""
+		return self._engine("fields").fields()
 
 	@property
 	def rotation(self):
@@ -225,14 +251,14 @@ class Block:
 	@property
 	def area(self):
 		"""Reference area of the triangles (m,) [m²]."""
-		return self._values("area", "area") if _engine_if_any() else self.mesh.areas
+		return self._values("area", "area") if self._engine_if_any() else self.mesh.areas
 
 	@property
 	def degrees_of_freedom(self):
 		"""Unknowns of the sample: two per node, two per core, and one rotation per core where cores rotate (as
 		they do unless O.engines says otherwise).
 		"""
-		per_core = 3 if _settings().rotation == "cosserat" else 2
+		per_core = 3 if self._settings().rotation == "cosserat" else 2
 		return 2 * len(self.node_ids) + per_core * len(self.triangle_ids)
 
 	# --- boundary conditions
@@ -277,7 +303,7 @@ class Block:
 	# --- within
 	def _points(self, kind, quantity):
 		"""Position or velocity of nodes or cores (n, 2), from the engine, or from State where there is none."""
-		engine = _engine_if_any()
+		engine = self._engine_if_any()
 		if engine:
 			return fixed(engine.array(kind + quantity)[self._rows(engine, kind)])
 		bodies = self._nodes() if kind == "node" else self._triangles()
@@ -286,8 +312,20 @@ class Block:
 
 	def _values(self, name, value):
 		"""What the engine computes of the triangles; the name is that of the block's property."""
-		engine = _engine(name)
-		return fixed(engine.values(value)[self._rows(engine, "core")])
+		engine = self._engine(name)
+		rows = self._rows(engine, "core")
+		return Field(engine.values(value)[rows], engine.values("tilePlace")[rows])
+
+	def _engine_if_any(self):
+		"""The engine of these triangles, None where O.engines has none."""
+		return self._engine() if any(isinstance(e, DeformableEngine) for e in O.engines) else None
+
+	def _settings(self):
+		"""The engine of these triangles, or one with the defaults."""
+		return self._engine_if_any() or DeformableEngine()
+
+	def _engine(self, wanted=None):
+		return _engine(wanted, self.triangle_ids[0])
 
 	def _rows(self, engine, kind):
 		"""Where the nodes or cores stand in the engine's arrays."""
@@ -303,7 +341,7 @@ class Block:
 
 	def _masses(self):
 		"""Masses of nodes and cores [kg]."""
-		engine = _engine_if_any()
+		engine = self._engine_if_any()
 		if engine:
 			return tuple(engine.array(kind + "Mass")[self._rows(engine, kind)] for kind in ("node", "core"))
 		density = np.array([body.material.density for body in self._triangles()])
@@ -340,14 +378,14 @@ class Block:
 		"""Moments of inertia about their centre [kg·m²] and spins [rad/s] of the cores; without inertia where
 		they do not rotate.
 		"""
-		settings = _settings()
+		settings = self._settings()
 		if settings.rotation != "cosserat":
 			return np.zeros(len(core_masses)), np.zeros(len(core_masses))
 		# the core has what the rigid triangle has more than its corners: m Σ|r|²/12 - (α m/3) Σ|r|²
 		share = settings.vertexShare
 		arms = ((self.mesh.nodes[self.mesh.triangles] - self.mesh.centroids[:, None])**2).sum(axis=(1, 2))
 		inertia = core_masses / (1 - share) * arms * (1 / 12 - share / 3)
-		if _engine_if_any():
+		if self._engine_if_any():
 			return inertia, settings.array("coreSpin")[self._rows(settings, "core")]
 		return inertia, np.array([body.state.angVel[2] for body in self._triangles()])
 
@@ -410,25 +448,17 @@ def _gone(missing):
 	return f"body {missing} of this block is not in the present scene; append the mesh again after O.reset()"
 
 
-def _engine_if_any():
-	"""The DeformableEngine of O.engines, None where there is none."""
-	return _engine() if any(isinstance(e, DeformableEngine) for e in O.engines) else None
-
-
-def _settings():
-	"""The DeformableEngine of O.engines, or one with the defaults."""
-	return _engine_if_any() or DeformableEngine()
-
-
-def _engine(wanted=None):
+def _engine(wanted=None, triangle=None):
+	"""The DeformableEngine in O.engines, where there are several that of a triangle."""
 	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
 	if len(engines) == 1:
 		return engines[0]
+	for engine in engines:
+		if triangle is not None and (engine.values("triangleIds") == triangle).any():
+			return engine
 	if engines:
-		raise RuntimeError(
-			f"O.engines has {len(engines)} DeformableEngine where one is needed: it keeps and moves the "
-			"deformable triangles"
-		)
+		what = f"triangle {triangle} belongs to none of them" if triangle is not None else "say which by block"
+		raise RuntimeError(f"O.engines has {len(engines)} DeformableEngine, and {what}")
 	what = f"block.{wanted} is computed" if wanted else "deformable triangles are computed and moved"
 	raise RuntimeError(
 		f"{what} by a DeformableEngine, and O.engines has none yet: set O.engines = [ForceResetter(), …, "

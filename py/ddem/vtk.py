@@ -128,24 +128,30 @@ def _triangles(block, sub_elements):
 	nodes, triangles = block.positions, block.mesh.triangles
 	corners, cells = nodes, triangles
 	points = {"displacement": block.displacements, "velocity": block.velocities}
-	tensors = {"stress": block.stress, "strain": block.strain, "plasticStrain": block.plastic_strain, "damage": block.sub_element_damage}
+	# what every law has, and whatever else the laws of this block remember
+	tensors = {"stress": block.stress, "strain": block.strain, "plasticStrain": block.plastic_strain}
+	scalars = {"damage": block.sub_element_damage}
+	for name, _, components in block.fields:
+		if name not in tensors:
+			(scalars if components == 1 else tensors)[name] = block.field(name)
 	single = {"rotation": block.rotation, "region": block.mesh.regions, "id": block.triangle_ids}
 	if sub_elements:
 		centres = len(nodes) + np.arange(len(triangles))
-		cores = _cores(block, "corePosition")
+		cores = block.core_positions
 		corners = np.vstack([nodes, cores])
 		points = {
 			"displacement": np.vstack([block.displacements, cores - block.reference_positions[triangles].mean(axis=1)]),
-			"velocity": np.vstack([block.velocities, _cores(block, "coreVelocity")]),
+			"velocity": np.vstack([block.velocities, block.core_velocities]),
 		}
 		cells = np.stack([np.repeat(centres, 3), triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()], axis=1)
-		values = {name: array.reshape(len(cells), -1) for name, array in tensors.items()}
+		values = {name: array.reshape(len(cells), -1) for name, array in (tensors | scalars).items()}
 		single = {name: np.repeat(array, 3) for name, array in single.items()}
 	else:
-		values = {name: array.mean(axis=1) for name, array in tensors.items()}
-	for name in ("stress", "strain", "plasticStrain"):
+		values = {name: array.mean(axis=1) for name, array in (tensors | scalars).items()}
+	for name in tensors:
 		values[name] = np.pad(values[name], ((0, 0), (0, 2)))
-	values["damage"] = values["damage"].ravel()
+	for name in scalars:
+		values[name] = values[name].ravel()
 	return grid(corners, cells, VTK_TRIANGLE, points, {**values, **single})
 
 
@@ -194,13 +200,6 @@ def _broken(sample):
 
 def _modes(broken):
 	return np.where(broken["mode"] == "tension", TENSION, SHEAR)
-
-
-def _cores(block, name):
-	from .block import _engine
-	engine = _engine()
-	first = np.searchsorted(engine.values("triangleIds"), block.triangle_ids[0])
-	return engine.array(name)[first:first + len(block.triangle_ids)]
 
 
 def _in_space(values):

@@ -19,7 +19,6 @@ struct Elastic : LawDefaults {
 		        , twoShear(2 * p.shear)
 		{
 			checkParameters(name, Parameters::entries(), &p);
-			ElasticModuli { p.bulk, p.shear }.validate();
 		}
 		Parameters parameters;
 		double     lambda, twoShear; ///< [Pa]
