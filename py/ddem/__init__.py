@@ -15,13 +15,13 @@ Append a mesh of deformable triangles and load it::
 
 SI units; tension positive. The package is a library and three houses beside it:
 
-==================  ============================================================================================
-here                what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
-                    law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`
-:mod:`studies`      what scripts build and run: uniaxial tests, structures, calibration, campaigns
-:mod:`reports`      pages, tables and pictures of finished studies
-:mod:`verification` cases with a reference each
-==================  ============================================================================================
+===================  ============================================================================================
+here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
+                     law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`
+:mod:`studies`       what scripts build and run: uniaxial tests, structures, calibration, campaigns
+:mod:`reports`       pages, tables and pictures of finished studies
+:mod:`verification`  cases with a reference each
+===================  ============================================================================================
 
 The library imports nothing of the houses, studies nothing of reports. Only :mod:`mesh`, :mod:`materialpoint`,
 :mod:`packing`, :mod:`plots` and parts of the houses, such as :mod:`studies.calibration`, work outside YADE.

@@ -9,7 +9,9 @@ _HEADER = re.compile(r"\s*(\w+)\s*\[(.*)\]\s*$")
 
 
 class Series:
-	"""Rows of numbers in named columns with units::
+	"""Rows of numbers in named columns with units.
+
+	Fill it row by row, take a column, write and read files::
 
 		series = Series(time="s", stress="Pa")
 		series.append(time=0.0, stress=1e6)
