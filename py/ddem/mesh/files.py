@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from .. import provenance
 from .triangles import Mesh
 
 _REGION = "region"  # cell array with the region's number; "region:NAME" marks the triangles of one region, for formats without names
@@ -44,9 +45,11 @@ def read(path, orient=False):
 	used, renumbered = np.unique(triangles, return_inverse=True)
 	regions, names = _regions(data, blocks, len(triangles))
 	try:
-		return Mesh(planar[used], renumbered.reshape(-1, 3), regions, names, orient=orient).validate()
+		mesh = Mesh(planar[used], renumbered.reshape(-1, 3), regions, names, orient=orient).validate()
 	except ValueError as error:
 		raise ValueError(f"{path!r}: {error}") from None
+	provenance.note_file(path)
+	return mesh
 
 
 def write(mesh, path):

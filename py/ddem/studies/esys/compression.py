@@ -44,7 +44,8 @@ def mass(radius, density, law):
 
 def rows(path, names, kinds):
 	with open(path, newline="") as file:
-		return [tuple(kind(row[name]) for name, kind in zip(names, kinds)) for row in csv.DictReader(file)]
+		lines = [line for line in file if not line.startswith("#")]
+		return [tuple(kind(row[name]) for name, kind in zip(names, kinds)) for row in csv.DictReader(lines)]
 
 
 def simulation(parameters, particles, bonds):
