@@ -5,6 +5,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -266,3 +267,31 @@ def test_rows_skip_comments_only(tmp_path):
 		writer.writerows([["a", "b"], ["# no", "1"], [" # yes", "2"]])
 	with open("a.csv", newline="") as file:
 		assert list(provenance.csv_rows(file)) == [(1, ["a", "b"]), (3, [" # yes", "2"])]
+
+
+# --- nobody writes around it
+
+WRITES = re.compile(r"\.savefig\(|csv\.(?:Dict)?[wW]riter\(|json\.dump\(|np\.save\w*\(|XMLUnstructuredGridWriter\(\)")
+#: files that write by themselves: how many times, and why they may
+KNOWN = {
+	"provenance.py": (1, "the one place for CSV"),
+	"plots.py": (1, "with metadata"),
+	"vtk.py": (1, "with a text in the field data"),
+	"verification/framework.py": (1, "with metadata"),
+	"verification/freefem.py": (1, "what FreeFem++ reads, in a temporary folder"),
+	"studies/virtualtest.py": (2, "what two processes hand each other"),
+	"studies/esys/__init__.py": (1, "what ESyS-Particle reads"),
+	"studies/esys/compression.py": (1, "what ESyS-Particle hands back, in its own Python"),
+}
+
+
+def test_results_are_written_in_the_shared_places():
+	root = Path(__file__).resolve().parents[2]
+	found = {}
+	for folder in (root / "py" / "ddem", root / "scripts"):
+		for path in folder.rglob("*.py"):
+			writes = len(WRITES.findall(path.read_text(encoding="utf-8")))
+			if writes:
+				found[path.relative_to(folder).as_posix()] = writes
+	unknown = "a result file says where it comes from: write it through provenance, Series, plots.save or vtk.write"
+	assert found == {name: times for name, (times, _) in KNOWN.items()}, unknown
