@@ -24,6 +24,7 @@ import shutil
 import signal
 import sys
 
+from yade.ddem import provenance
 from yade.ddem.reports import bonded_study
 from yade.ddem.studies import commandline
 from yade.ddem.studies.bonded_study import Group, Record
@@ -152,6 +153,7 @@ def read_options():
 	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the page and as PNG files")
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	if len(set(options.ranges)) < len(options.ranges):
 		parser.error(f"argument --ranges: {' '.join(options.ranges)} names one twice")
 	if options.safety == 0:

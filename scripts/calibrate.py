@@ -28,6 +28,7 @@ import signal
 import sys
 from argparse import SUPPRESS
 
+from yade.ddem import provenance
 from yade.ddem.reports.calibration import CalibrationReport, Progress, material_line
 from yade.ddem.studies import commandline, virtualtest
 from yade.ddem.studies.calibration import Calibration, Target
@@ -201,6 +202,7 @@ def read_options():
 	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	for name in ("young", "ucs", "tensile", "tune", "radii", "size", "velocity", "tension_velocity", "ramp"):
 		setattr(options, name, getattr(options, name, None))
 	for name in ("set", "start", "bounds"):

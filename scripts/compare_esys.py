@@ -21,7 +21,6 @@ Expect:   stresses equal to 1e-4 MPa up to the first bond that breaks one step a
           0.2 %.
 """
 import argparse
-import json
 import math
 import os
 import sys
@@ -30,7 +29,7 @@ import time
 from tqdm import tqdm
 
 from yade import ddem
-from yade.ddem import plots
+from yade.ddem import plots, provenance
 from yade.ddem.studies import commandline
 from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed
 from yade.ddem.studies.esys import comparison
@@ -148,8 +147,7 @@ def report(theirs, ours, options):
 		"differences": comparison.differences(theirs, ours),
 		"time_ratio_yade_to_esys": ours.nanoseconds / theirs.nanoseconds,
 	}
-	with open(os.path.join(options.out, "summary.json"), "w") as file:
-		json.dump(summary, file, indent="\t")
+	provenance.write_json(os.path.join(options.out, "summary.json"), summary, indent="\t")
 	print(f"\n{comparison.table(theirs, ours)}\n\nWritten to {options.out}")
 
 
@@ -198,6 +196,7 @@ def read_options():
 	bonds.add_argument("--mass-law", choices=("cube", "solid"), default=defaults.mass_law,
 		help="mass of a sphere: density times r³, ESyS-Particle's default, or times 4/3 pi r³")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	if options.bonds and not options.particles:
 		parser.error("argument --bonds: a file of bonds goes with a file of particles; add --particles")
 	if options.steps % options.every:

@@ -23,7 +23,7 @@ import math
 import os
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import confined, confined_figures
 
@@ -61,6 +61,7 @@ def read_options():
 	parser.add_argument("--mesh", choices=("crossed", "alternating", "unstructured"), default="crossed", help="pattern of the mesh")
 	commandline.add_files(parser, "confined_block", "ParaView files of the blocks with rough ends")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	for name, values, low, high in (
 		("--pressures", options.pressures, 0, 1e9), ("--velocity", options.velocity, 1e-3, 100), ("--strain", options.strain, 1e-4, 0.1),
 		("--size", options.size, 1e-4, confined.WIDTH / 4), ("--seed", options.seed, 0, math.inf)

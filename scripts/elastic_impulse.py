@@ -24,7 +24,7 @@ import time
 
 import numpy as np
 
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.series import Series
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import impulse, impulse_figures
@@ -95,6 +95,7 @@ def read_options():
 	run.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
 	run.add_argument("--out", default=os.path.join("out", "elastic_impulse"), metavar="DIR", help="folder for all files, made when missing")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	try:
 		options.impulse = impulse.Impulse(options.shape, options.pressure, options.duration, options.patch)
 	except ValueError as error:

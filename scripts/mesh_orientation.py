@@ -24,7 +24,7 @@ import math
 import os
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import confined, confined_figures
 
@@ -63,6 +63,7 @@ def read_options():
 	parser.add_argument("--seed", type=int, default=1, metavar="N", help="draws the fracture energies")
 	commandline.add_files(parser, "mesh_orientation")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	for name, values, low, high in (
 		("--count", options.count, 100, 1e5), ("--velocity", options.velocity, 1e-3, 100), ("--strain", options.strain, 1e-4, 0.1),
 		("--seed", options.seed, 0, math.inf)

@@ -24,7 +24,7 @@ import math
 import os
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import beam, beam_figures
 
@@ -66,6 +66,7 @@ def read_options():
 	parser.add_argument("--bands", choices=("both", "no", "yes"), default="both", help="with the crack-band correction or without; the picture shows both")
 	commandline.add_files(parser, "notched_beam", "ParaView files of the last beam")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	options.bands = {"both": (False, True), "no": (False,), "yes": (True,)}[options.bands]
 	for name, values, low, high in (
 		("--sizes", options.sizes, 5e-4, beam.NOTCH), ("--energy", options.energy, 1, math.inf), ("--velocity", options.velocity, 1e-3, 10),

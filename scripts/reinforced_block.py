@@ -34,7 +34,7 @@ import textwrap
 import numpy as np
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import reinforced, reinforced_figures, reinforced_statements
 
@@ -147,6 +147,7 @@ def read_options():
 	parser.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files of the first seed")
 	parser.add_argument("--out", default=os.path.join("out", "reinforced_block"), metavar="DIR", help="folder for all files, made when missing")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	for name, values, low, high in (
 		("--seeds", options.seeds, 0, np.inf), ("--sizes", options.sizes, 1e-4, reinforced.WIDTH / 4), ("--until", [options.until], 1e-5, np.inf),
 		("--velocity", [options.velocity], 1e-3, np.inf), ("--step", [options.step], 1e-3, 1)

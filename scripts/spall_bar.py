@@ -20,7 +20,7 @@ import os
 import numpy as np
 
 from yade import O
-from yade.ddem import plots, vtk
+from yade.ddem import plots, provenance, vtk
 from yade.ddem.series import Series
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import spall, spall_figures
@@ -65,6 +65,7 @@ def read_options():
 	parser.add_argument("--size", type=float, default=0.004, metavar="M", help="of the cells [m]")
 	commandline.add_files(parser, "spall_bar", "ParaView files of the bar of concrete")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	for name in ("speed", "duration", "energy", "length", "size"):
 		if not 0 < getattr(options, name) < np.inf:
 			parser.error(f"argument --{name}: {getattr(options, name):g} must be positive")

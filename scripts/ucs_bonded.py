@@ -28,7 +28,7 @@ import time
 from argparse import SUPPRESS
 
 from yade import ddem
-from yade.ddem import vtk
+from yade.ddem import provenance, vtk
 from yade.ddem.reports import parameter_tables
 from yade.ddem.reports.uniaxial import Report
 from yade.ddem.studies import commandline, uniaxial
@@ -184,6 +184,7 @@ def read_options():
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
 	output.add_argument("--progress", action=argparse.BooleanOptionalAction, default=True, help="progress bar, where the terminal can show it")
 	options = parser.parse_args()
+	provenance.begin({name: value for name, value in vars(options).items() if name != "packings"})
 
 	given = vars(options)
 	law, density = MASS[options.convention]

@@ -24,7 +24,7 @@ import os
 import time
 
 from yade import ddem
-from yade.ddem import vtk
+from yade.ddem import provenance, vtk
 from yade.ddem.reports import parameter_tables
 from yade.ddem.reports.parameter_tables import number
 from yade.ddem.reports.uniaxial import Report
@@ -172,6 +172,7 @@ def read_options():
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
 	output.add_argument("--progress", action=argparse.BooleanOptionalAction, default=True, help="progress bars, where the terminal can show them")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 
 	smallest, largest = options.radii
 	if smallest > largest:

@@ -12,14 +12,13 @@ Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A 
           example and says what it shows, where its reference comes from and what to expect.
 """
 import argparse
-import json
 import os
 import shlex
 import sys
 import tempfile
 
 import yade.config
-from yade.ddem import verification
+from yade.ddem import provenance, verification
 from yade.ddem.verification import freefem
 
 
@@ -35,9 +34,8 @@ def main():
 		print_result(results[-1])
 	records = [record for result in results for record in result.records]
 	if options.json:
-		with open(options.json, "w", encoding="utf-8") as file:
-			json.dump([record.plain() for record in records], file, indent=2, ensure_ascii=False, allow_nan=False)
-			file.write("\n")
+		plain = [record.plain() for record in records]
+		provenance.write_json(options.json, plain, indent=2, ensure_ascii=False, allow_nan=False)
 	failed = [result.case.name for result in results if not result.passed]
 	print(f"{sum(record.passed for record in records)} of {len(records)} checks passed, {len(results)} cases, {sum(result.wall for result in results):.0f} s")
 	if failed:
@@ -64,6 +62,7 @@ def read_options():
 	parser.add_argument("--json", metavar="FILE", help="write all comparisons into a file")
 	parser.add_argument("--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing")
 	options = parser.parse_args()
+	provenance.begin(vars(options))
 	if options.list and (options.json or options.report):
 		parser.error("argument --list: runs no case, so there is nothing for --json or --report; leave out one of them")
 	if options.json and os.path.isdir(options.json):

@@ -15,16 +15,18 @@ Append a mesh of deformable triangles and load it::
 
 SI units; tension positive. The package is a library and three houses beside it:
 
-==================  ============================================================================================
-here                what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
-                    law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`
-:mod:`studies`      what scripts build and run: uniaxial tests, structures, calibration, campaigns
-:mod:`reports`      pages, tables and pictures of finished studies
-:mod:`verification` cases with a reference each
-==================  ============================================================================================
+===================  ============================================================================================
+here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
+                     law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`,
+                     :mod:`provenance` (where results come from)
+:mod:`studies`       what scripts build and run: uniaxial tests, structures, calibration, campaigns
+:mod:`reports`       pages, tables and pictures of finished studies
+:mod:`verification`  cases with a reference each
+===================  ============================================================================================
 
 The library imports nothing of the houses, studies nothing of reports. Only :mod:`mesh`, :mod:`materialpoint`,
-:mod:`packing`, :mod:`plots` and parts of the houses, such as :mod:`studies.calibration`, work outside YADE.
+:mod:`packing`, :mod:`plots`, :mod:`provenance` and parts of the houses, such as :mod:`studies.calibration`, work
+outside YADE.
 """
 from . import mesh
 from ._lazy import lazy
@@ -32,7 +34,7 @@ from ._lazy import lazy
 # Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation", "EnergyBalance": "energy",
-	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None,
+	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,
 	"studies": None, "reports": None, "verification": None,
 }
 #: shorter names of modules in the houses

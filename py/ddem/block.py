@@ -8,7 +8,7 @@ import numpy as np
 
 from yade import Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
-from . import crackband
+from . import crackband, provenance
 from .arrays import BodyIds, fixed
 from .field import Field
 
@@ -34,6 +34,7 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	if not 0 < thickness < math.inf:
 		raise ValueError(f"thickness = {thickness} m must be positive and finite")
 	energies = _fracture_energies(mesh, by_region, seed, spread, floor)
+	provenance.note_seed(seed)
 	bands = np.ones(len(mesh.triangles)) if crack_band is None else crackband.factors(mesh.areas, crack_band)
 	offset = np.asarray(position, float)
 	if offset.shape != (3, ) or not np.isfinite(offset).all():

@@ -10,9 +10,10 @@
 The columns are those of :attr:`bonded.BondedSample.broken`: the two bodies, step and time of failure, middle and normal of the crack, its radius, the mode
 ("tension" or "shear"), the normal (tension positive) and shear stress that broke the bond, and the elastic energy that was lost with it. Needs no YADE.
 """
-import csv
 
 import numpy as np
+
+from . import provenance
 
 #: a record of a broken bond
 DTYPE = np.dtype([
@@ -31,8 +32,7 @@ _COLUMNS = (
 def write(records, path):
 	"""Write records (structured array of :data:`DTYPE`) to a CSV file, all digits of every number."""
 	columns = [records[name] if part is None else records[name][:, part] for _, name, part in _COLUMNS]
-	with open(path, "w", newline="") as file:
-		writer = csv.writer(file)
+	with provenance.csv_writer(path) as writer:
 		writer.writerow([title for title, _, _ in _COLUMNS])
 		writer.writerows(zip(*(column.tolist() for column in columns)))
 
@@ -40,20 +40,20 @@ def write(records, path):
 def read(path):
 	"""Read what :func:`write` wrote. ValueError names the line that is not understood."""
 	with open(path, newline="") as file:
-		reader = csv.reader(file)
-		if next(reader, None) != [title for title, _, _ in _COLUMNS]:
+		lines = provenance.csv_rows(file)
+		if next(lines, (1, None))[1] != [title for title, _, _ in _COLUMNS]:
 			raise ValueError(f"{path}, line 1: not the header of a list of broken bonds")
 		rows = []
-		for cells in reader:
+		for line, cells in lines:
 			if len(cells) != len(_COLUMNS):
-				raise ValueError(f"{path}, line {reader.line_num}: {len(cells)} fields instead of {len(_COLUMNS)}")
+				raise ValueError(f"{path}, line {line}: {len(cells)} fields instead of {len(_COLUMNS)}")
 			row = np.zeros((), DTYPE)
 			for (_, name, part), cell in zip(_COLUMNS, cells):
 				kind = DTYPE[name].base.kind
 				try:
 					value = cell if kind == "U" else int(cell) if kind == "i" else float(cell)
 				except ValueError as error:
-					raise ValueError(f"{path}, line {reader.line_num}: {name}: {error}") from None
+					raise ValueError(f"{path}, line {line}: {name}: {error}") from None
 				if part is None:
 					row[name] = value
 				else:

@@ -8,7 +8,7 @@ half the size. Bažant and Oh (Crack band theory for fracture of concrete, Maté
 
 with S the area of the triangle; that width is Rots' for linear triangles (Computational modeling of concrete fracture, Delft, 1988). The factor acts from a damage
 Ω_D of 0.5 on, when with n_f = 2 a fifth of the strength is gone: until about there flow is spread over the volume and G_f rules the strength, which must not depend on the mesh.
-From there on it is right for this law in the following sense. In an open crack Ω = ½ |M_c| w/G_f (eq. 8) and σ = σ_t/(1 + Ω²), with the work of flow
+From there on it is right for this law in the following sense. In an open crack ``Ω = ½ |M_c| w/G_f`` (eq. 8) and σ = σ_t/(1 + Ω²), with the work of flow
 w = ∫ σ dε_p; with the opening δ = h ε_p and G_f h kept, σ is the same function of δ for all h, but for the rate, whose effect is h^−0.08.
 
 Measured on bars that break in one row (verification case ``crack_band``, G_f = 8 kJ/m³ at 10 mm): on unstructured meshes of 12 to 4 mm strengths of 9.8 to 10.0 MPa
@@ -26,7 +26,7 @@ Its limits:
   than a material point.
 - The energy of a crack never ends: σ falls as 1/Ω², so it grows with the cube root of the opening. G_f h is a measure of it, not the sum.
 - There is no snap-back within a triangle in tension as long as G_f > 0.43 σ_t²/E, σ_t being the stress of steady flow (the steepest softening of the above,
-  0.52 ½|M_c| σ_t²/G_f, against E). That is 0.7 kJ/m³ for Table 2 at 1/s, so h may be a hundred times h_ref. In compression it comes sooner: in plane strain with
+  ``0.52 ½|M_c| σ_t²/G_f``, against E). That is 0.7 kJ/m³ for Table 2 at 1/s, so h may be a hundred times h_ref. In compression it comes sooner: in plane strain with
   Table 2 from five times h_ref on, with a fifth of its G_f from twice.
 """
 import math

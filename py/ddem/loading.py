@@ -14,7 +14,7 @@ from .block import Block
 def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", bottom="bottom"):
 	"""Drive the top of a block down (and the bottom up), as stiff platens would.
 
-	:param block: :class:`Block` from :func:`append`
+	:param block: :class:`Block` from :func:`block.append`
 	:param velocity: speed of the top platen [m/s], positive compresses, negative pulls.
 	:param ramp: time over which the speed grows linearly from zero [s].
 	:param lateral: "fixed" holds the end nodes laterally (rough platens), "free" lets them slide.

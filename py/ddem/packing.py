@@ -1,7 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """Packings of spheres: random prisms and layers of a range of radii, neighbours, CSV files."""
 import contextlib
-import csv
 import ctypes
 import hashlib
 import json
@@ -10,6 +9,8 @@ import os
 import sys
 
 import numpy as np
+
+from . import provenance
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
 
@@ -85,8 +86,7 @@ class Packing:
 	def write(self, particles, bonds=None, length_unit="m"):
 		"""Write ``id,x,y,z,r`` to *particles* and, where given, ``i,j`` to *bonds*, lengths in *length_unit*; all digits are kept."""
 		unit = _unit(length_unit)
-		with open(particles, "w", newline="") as file:
-			writer = csv.writer(file)
+		with provenance.csv_writer(particles) as writer:
 			writer.writerow(["id", "x", "y", "z", "r"])
 			for row, (centre, radius) in enumerate(zip(self.centres, self.radii)):
 				writer.writerow([row] + [repr(float(v / unit)) for v in (*centre, radius)])
@@ -94,8 +94,7 @@ class Packing:
 			return
 		if self.bonds is None:
 			raise ValueError("this packing has no list of bonds to write; set packing.bonds = packing.neighbours(gap)")
-		with open(bonds, "w", newline="") as file:
-			writer = csv.writer(file)
+		with provenance.csv_writer(bonds) as writer:
 			writer.writerow(["i", "j"])
 			writer.writerows(self.bonds.tolist())
 
@@ -118,9 +117,10 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 	if 2 * rmax > min(width, height, depth):
 		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; choose a smaller radius, or layer()")
 	lower, upper = (0, 0, -depth / 2), (width, height, depth / 2)
+	provenance.note_seed(seed)
 	path = _kept(keep, (width, height, depth), rmin, rmax, seed, fails)
 	if path and os.path.exists(path):
-		kept = read(path)
+		kept = _read(path)
 		return Packing(kept.centres, kept.radii, lower, upper)
 	spheres = _pack((width, height, depth), rmin, rmax, seed, fails)
 	packing = Packing(spheres[:, :3] - np.array([0, 0, depth / 2]), spheres[:, 3], lower, upper)
@@ -139,6 +139,7 @@ def layer(width, height, rmin, rmax, seed=1, fails=5000):
 	_check_sizes({"width": width, "height": height, "rmin": rmin, "rmax": rmax}, rmin, rmax)
 	if 2 * rmax > min(width, height):
 		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} m; choose a smaller radius")
+	provenance.note_seed(seed)
 	spheres = _pack((width, height), rmin, rmax, seed, fails)
 	spheres[:, 2] = 0
 	return Packing(spheres[:, :3], spheres[:, 3], lower=(0, 0, -rmax), upper=(width, height, rmax))
@@ -150,6 +151,13 @@ def read(particles, bonds=None, length_unit="m"):
 	:param length_unit: of the file: "m", "cm", "mm" or "um"
 	:raises ValueError: naming file, line and what is wrong there
 	"""
+	packing = _read(particles, bonds, length_unit)
+	for path in filter(None, (particles, bonds)):
+		provenance.note_file(path)
+	return packing
+
+
+def _read(particles, bonds=None, length_unit="m"):
 	unit = _unit(length_unit)
 	rows, ids = [], {}
 	for place, record in _records(particles, ("id", "x", "y", "z", "r")):
@@ -272,13 +280,13 @@ def _unit(name):
 def _records(path, columns):
 	"""Place ("file, line n") and values by column of every line of a CSV file."""
 	with open(path, newline="") as file:
-		reader = csv.reader(file)
-		header = [name.strip() for name in next(reader, [])]
+		lines = provenance.csv_rows(file)
+		header = [name.strip() for name in next(lines, (1, []))[1]]
 		missing = [name for name in columns if name not in header]
 		if missing:
 			raise ValueError(f"{path}, line 1: column {missing[0]} is missing; the header must name {', '.join(columns)}")
-		for fields in reader:
-			place = f"{path}, line {reader.line_num}"
+		for number, fields in lines:
+			place = f"{path}, line {number}"
 			if not fields:
 				continue
 			if len(fields) != len(header):

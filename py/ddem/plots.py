@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
 
+from . import provenance
+
 COLUMN = 85.0  # width of one column [mm]
 PAGE = 175.0  # width of the page [mm]
 
@@ -51,10 +53,10 @@ def figure(width=COLUMN, height=None):
 
 
 def save(fig, file):
-	"""Write a figure; the file's ending says the format, missing folders are made."""
+	"""Write a figure; the file's ending says the format, missing folders are made; it says where it comes from."""
 	os.makedirs(os.path.dirname(os.path.abspath(file)), exist_ok=True)
 	with rc_context(STYLE):
-		fig.savefig(file)
+		fig.savefig(file, metadata=provenance.metadata(os.path.splitext(file)[1]))
 
 
 def mesh(mesh, ax=None, file=None):

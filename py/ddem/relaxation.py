@@ -51,7 +51,7 @@ def relax(residual=1e-6, damping=0.3, limit=200_000):
 
 def out_of_balance():
 	"""Largest force out of balance at any free degree of freedom (or moment on a core over the triangle's size), over the mean force that the stresses of a
-	triangle transmit, |σ| h √S [-]. Zero where neither is more than the round-off of positions, infinite where a load meets a sample that carries nothing
+	triangle transmit, ``|σ| h √S`` [-]. Zero where neither is more than the round-off of positions, infinite where a load meets a sample that carries nothing
 	yet.
 
 	It takes one undamped step, whose change of velocities tells all forces, whoever adds them.

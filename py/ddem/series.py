@@ -1,15 +1,18 @@
 # GPL v2 or later, see LICENSE.
 """Time series with units, and their CSV files."""
-import csv
 import re
 
 import numpy as np
+
+from . import provenance
 
 _HEADER = re.compile(r"\s*(\w+)\s*\[(.*)\]\s*$")
 
 
 class Series:
-	"""Rows of numbers in named columns with units::
+	"""Rows of numbers in named columns with units.
+
+	Fill it row by row, take a column, write and read files::
 
 		series = Series(time="s", stress="Pa")
 		series.append(time=0.0, stress=1e6)
@@ -52,9 +55,11 @@ class Series:
 		self._rows.append([float(values[name]) for name in self.units])
 
 	def write(self, path):
-		"""Write a CSV file: a header of names with units, then all digits of every number."""
-		with open(path, "w", newline="") as file:
-			writer = csv.writer(file)
+		"""Write a CSV file: a header of names with units, then all digits of every number.
+
+		Its last line, which begins with "#", says where it comes from (see :mod:`provenance`).
+		"""
+		with provenance.csv_writer(path) as writer:
 			writer.writerow([f"{name} [{unit}]" for name, unit in self.units.items()])
 			writer.writerows([[repr(value) for value in row] for row in self._rows])
 
@@ -62,20 +67,20 @@ class Series:
 	def read(cls, path):
 		"""Read what :meth:`write` wrote. ValueError names the line that is not understood."""
 		with open(path, newline="") as file:
-			reader = csv.reader(file)
-			columns = [_HEADER.match(cell) for cell in next(reader, [])]
+			rows = provenance.csv_rows(file)
+			columns = [_HEADER.match(cell) for cell in next(rows, (1, []))[1]]
 			if not columns or not all(columns):
 				raise ValueError(f"{path}, line 1: the header must name every column with its unit, as in \"time [s],stress [Pa]\"")
 			series = cls(**{found[1]: found[2] for found in columns})
 			if len(series.units) != len(columns):
 				raise ValueError(f"{path}, line 1: a column is named twice")
-			for row in reader:
+			for line, row in rows:
 				try:
 					series._rows.append([float(cell) for cell in row])
 				except ValueError as error:
-					raise ValueError(f"{path}, line {reader.line_num}: {error}") from None
+					raise ValueError(f"{path}, line {line}: {error}") from None
 				if len(row) != len(columns):
-					raise ValueError(f"{path}, line {reader.line_num}: {len(row)} fields where the header has {len(columns)}")
+					raise ValueError(f"{path}, line {line}: {len(row)} fields where the header has {len(columns)}")
 		return series
 
 	def _column(self, name):

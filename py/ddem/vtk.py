@@ -14,9 +14,11 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkPoints, vtkStringArray
 from vtkmodules.vtkCommonDataModel import VTK_LINE, VTK_TRIANGLE, VTK_VERTEX, vtkCellArray, vtkUnstructuredGrid
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
+
+from . import provenance
 
 #: order of the components of a symmetric tensor in VTK
 TENSOR = ("XX", "YY", "ZZ", "XY", "YZ", "XZ")
@@ -85,9 +87,16 @@ def grid(points, cells, kind, point_data=None, cell_data=None):
 
 
 def write(data, path, time=None):
-	"""Write a vtkUnstructuredGrid to a .vtu file, compressed; *time* [s] is stored as VTK's TimeValue."""
+	"""Write a vtkUnstructuredGrid to a .vtu file, compressed; *time* [s] is stored as VTK's TimeValue.
+
+	Where it comes from is stored in its field data, as a text (see :mod:`provenance`).
+	"""
 	if time is not None:
 		data.GetFieldData().AddArray(_array("TimeValue", np.array([float(time)])))
+	origin = vtkStringArray()
+	origin.SetName(provenance.KEY)
+	origin.InsertNextValue(provenance.text())
+	data.GetFieldData().AddArray(origin)
 	writer = vtkXMLUnstructuredGridWriter()
 	writer.SetFileName(path)
 	writer.SetInputData(data)
@@ -97,12 +106,23 @@ def write(data, path, time=None):
 		raise OSError(f"VTK could not write {path}")
 
 
+def field_text(path, name):
+	"""A text in the field data of a .vtu file; None when it holds none of that name."""
+	reader = vtkXMLUnstructuredGridReader()
+	reader.SetFileName(path)
+	reader.Update()
+	found = reader.GetOutput().GetFieldData().GetAbstractArray(name)
+	return found.GetValue(0) if isinstance(found, vtkStringArray) else None
+
+
 class _Collection:
 	"""A .pvd file and the .vtu files beside it."""
 
 	def __init__(self, name):
 		self.name, self.path = name, name + ".pvd"
 		self.tree = ET.ElementTree(ET.Element("VTKFile", type="Collection", version="0.1"))
+		self.origin = ET.Comment()
+		self.tree.getroot().append(self.origin)
 		self.list = ET.SubElement(self.tree.getroot(), "Collection")
 		os.makedirs(os.path.dirname(os.path.abspath(name)), exist_ok=True)
 		for old in glob.glob(glob.escape(name) + "-[0-9]*.vtu") + glob.glob(glob.escape(self.path)):
@@ -112,6 +132,7 @@ class _Collection:
 		path = f"{self.name}-{len(self.list):04d}.vtu"
 		write(data, path, time)
 		ET.SubElement(self.list, "DataSet", timestep=repr(float(time)), part="0", file=os.path.basename(path))
+		self.origin.text = provenance.comment()
 		ET.indent(self.tree)
 		self.tree.write(self.path + ".new", encoding="utf-8", xml_declaration=True)
 		os.replace(self.path + ".new", self.path)  # complete at any moment, so ParaView can follow a run

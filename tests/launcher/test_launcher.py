@@ -28,7 +28,7 @@ def script(tmp_path):
 	return write
 
 
-@pytest.mark.parametrize('command', ['run', 'test', 'bench', 'shell', 'setup'])
+@pytest.mark.parametrize('command', ['run', 'test', 'bench', 'docs', 'shell', 'setup'])
 def test_every_command_has_help(command):
 	result = ddem(command, '--help')
 	assert result.returncode == 0
@@ -38,7 +38,7 @@ def test_every_command_has_help(command):
 def test_general_help_names_every_command():
 	result = ddem('--help')
 	assert result.returncode == 0
-	assert all('scripts/ddem ' + command in result.stdout for command in ['run', 'test', 'bench', 'shell', 'setup'])
+	assert all('scripts/ddem ' + command in result.stdout for command in ['run', 'test', 'bench', 'docs', 'shell', 'setup'])
 
 
 @pytest.mark.parametrize(
@@ -49,6 +49,8 @@ def test_general_help_names_every_command():
 		(['run', '--threads', 'many', 'x.py'], "--threads needs a number, not 'many'"),
 		(['run', '--fast', 'x.py'], "unknown option '--fast'"),
 		(['setup', '--hurry'], "unknown argument '--hurry'"),
+		(['docs', 'models'], "unknown argument 'models'"),
+		(['docs', '--out'], '--out needs a folder'),
 	]
 )
 def test_wrong_use_is_one_line_and_exit_code_2(arguments, message):

@@ -22,6 +22,8 @@ TOPICS = {
 	"deformable_static": "triangles and finite elements",
 	"esys_equality": "bonded spheres against recorded runs of ESyS-Particle",
 	"houses": "this file",
+	"manual": "the extensions that make the manual",
+	"results": "what the files of scripts say of themselves",
 	"plugin": "that YADE has loaded the plugin",
 	"verification_references": "the references of the verification cases",
 }

@@ -28,7 +28,8 @@ def test_header_names_columns_with_units(tmp_path):
 	series.append(strain=0.5, speed=1, density=2400)
 	series.write(tmp_path / "series.csv")
 	lines = (tmp_path / "series.csv").read_text(encoding="utf-8").splitlines()
-	assert lines == ["strain [-],speed [m/s],density [kg/m³]", "0.5,1.0,2400.0"]
+	assert lines[:2] == ["strain [-],speed [m/s],density [kg/m³]", "0.5,1.0,2400.0"]
+	assert len(lines) == 3 and lines[2].startswith("# provenance: ")
 
 
 def test_columns():

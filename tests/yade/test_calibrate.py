@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 
+import origins
 import pytest
 import script_modules
 
@@ -70,6 +71,7 @@ def test_targets_are_met_and_a_second_start_uses_the_file(job, here, monkeypatch
 	again = virtualtest.perform(setup, {name: parameter["value"] for name, parameter in found["parameters"].items()}, {"test": "compression", "seed": 1})
 	assert again["ucs"] == pytest.approx(found["targets"]["ucs"]["measured"], rel=1e-9)
 	assert {"calibration.html", "calibration.json", "convergence.png", "evaluations.jsonl", "sensitivities.png"} <= set(os.listdir(tmp_path))
+	assert len({origin["inputs_sha256"] for origin in origins.of_all(tmp_path).values()}) == 1
 	made = len(here)
 	assert run(job, monkeypatch, tmp_path, *SMALL, *AIM) == 0
 	assert len(here) == made

@@ -1,6 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """Structures of the report and beyond: their loads, what they measure, and their scripts. What happens to them is checked by the verification cases."""
 import numpy as np
+import origins
 import pytest
 import script_modules
 from test_vtk import collection, read
@@ -196,6 +197,7 @@ def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
 	arguments, expected = SMALL[name]
 	script_modules.run(script_modules.load(name), monkeypatch, *arguments, "--out", tmp_path / "new")
 	found = {file.name for file in (tmp_path / "new").iterdir() if file.suffix != ".vtu"}
+	assert len({origin["inputs_sha256"] for origin in origins.of_all(tmp_path / "new").values()}) == 1
 	assert found == expected
 	for file in expected:
 		if file.endswith(".pvd"):

@@ -14,7 +14,7 @@ from yade.ddem.materialpoint import concrete
 from yade.ddem.verification import concrete_rates, concrete_theory, framework, page
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "scripts", "verify.py")
-KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s"]
+KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s", "provenance"]
 
 
 @pytest.mark.parametrize(

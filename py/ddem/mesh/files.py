@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
+from .. import provenance
 from . import abaqus
 from .triangles import Mesh
 
@@ -57,9 +58,11 @@ def read(path, orient=False, length_unit="m", regions=None):
 	used, renumbered = np.unique(triangles, return_inverse=True)
 	try:
 		numbers, names = _regions(groups, preferred, len(triangles), regions)
-		return Mesh(planar[used], renumbered.reshape(-1, 3), numbers, names, orient=orient).validate()
+		mesh = Mesh(planar[used], renumbered.reshape(-1, 3), numbers, names, orient=orient).validate()
 	except ValueError as error:
 		raise ValueError(f"{path!r}: {error}") from None
+	provenance.note_file(path)
+	return mesh
 
 
 def write(mesh, path):

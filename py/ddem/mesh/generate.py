@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from .. import _mesh
+from .. import _mesh, provenance
 from .outline import Rings, box, distance, inside, signed_area
 from .triangles import Mesh
 
@@ -90,6 +90,7 @@ def polygon(outline, holes=(), size=None, regions=None, min_angle=20.6, smoothin
 
 	points, segments, pieces = _divided(rings, field)
 	if seed is not None:
+		provenance.note_seed(seed)
 		points = np.vstack([points, _scattered(shapes[:rings.holes + 1], points[segments], field, seed)])
 	holes = [np.array(pieces[i], dtype=np.int32) for i in range(1, rings.holes + 1)]
 	nodes, triangles = _mesh.triangulate(

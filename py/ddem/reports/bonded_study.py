@@ -1,11 +1,10 @@
 # GPL v2 or later, see LICENSE.
 """The page of the study of bonded spheres, with its JSON, CSV files and pictures."""
-import csv
 import datetime
-import json
 import os
 import re
 
+from .. import provenance
 from ..studies.bonded_study import ESYS, FIGURES, RECORD, UCS_CLAIMED, YOUNG_CLAIMED, change, claims, place, write_curves
 from . import bonded_study_figures as figures
 from . import pages
@@ -26,9 +25,8 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 	paper, others = [g for g in groups if g.kind == "paper"], [g for g in groups if g.kind != "paper"]
 	said = claims(groups)
 	texts = {"findings": findings(groups), "others": influences(groups), "readings": readings(groups)}
-	with open(os.path.join(folder, "study.json"), "w", encoding="utf-8") as file:
-		json.dump(_plain(groups, said, texts, written, command, options, versions), file, indent=2, ensure_ascii=False, allow_nan=False)
-		file.write("\n")
+	plain = _plain(groups, said, texts, written, command, options, versions)
+	provenance.write_json(os.path.join(folder, "study.json"), plain, indent=2, ensure_ascii=False, allow_nan=False)
 	_write_runs(groups, os.path.join(folder, "runs.csv"))
 	for group in groups:
 		write_curves(group, os.path.join(folder, f"curves_{group.name}.csv"))
@@ -161,8 +159,7 @@ def _breaks(groups):
 
 
 def _write_runs(groups, path):
-	with open(path, "w", newline="") as file:
-		writer = csv.writer(file)
+	with provenance.csv_writer(path) as writer:
 		titles = [f"{name} [{unit or '-'}]" for name, _, unit, _ in FIGURES]
 		writer.writerow(["group", "kind", "radius_min [m]", "radius_max [m]", "wall_stiffness [Pa]", "seed", *titles])
 		for group in groups:

@@ -8,7 +8,6 @@
 	report.write()
 """
 import datetime
-import json
 import math
 import os
 
@@ -17,7 +16,7 @@ from markupsafe import Markup
 from matplotlib import rc_context
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
-from .. import plots
+from .. import plots, provenance
 from ..studies.calibration_quantities import MEASURES, TUNABLES
 from . import pages
 
@@ -190,9 +189,7 @@ class CalibrationReport:
 	def write(self):
 		"""Write all files and return the path of calibration.html."""
 		os.makedirs(self.folder, exist_ok=True)
-		with open(self._path("calibration.json"), "w") as file:
-			json.dump(self.summary(), file, indent=2, allow_nan=False)
-			file.write("\n")
+		provenance.write_json(self._path("calibration.json"), self.summary(), indent=2, allow_nan=False)
 		drawn = {}
 		if self.pictures:
 			drawn["convergence"] = convergence(self.outcome) if self.outcome.best else None

@@ -2,12 +2,13 @@
 """Pages: what all reports in HTML share. A page is one file; its pictures are in it, and beside it as files."""
 import base64
 import os
-import platform
 from dataclasses import dataclass
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
-from .. import plots
+from .. import plots, provenance
+from ..provenance import machine, processor  # noqa: F401: of all pages
 
 _TEMPLATES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "templates")
 
@@ -50,7 +51,9 @@ def render(template, filters=None, **values):
 	"""
 	environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
 	environment.filters.update(filters or {})
-	return environment.get_template(template).render(**values)
+	origin = provenance.record()
+	comment = Markup(provenance.comment(origin))
+	return environment.get_template(template).render(origin=origin, comment=comment, **values)
 
 
 def write(page, path):
@@ -58,17 +61,3 @@ def write(page, path):
 	with open(path, "w", encoding="utf-8") as file:
 		file.write(page)
 	return path
-
-
-def machine():
-	"""What the page was made on: system, processor, number of its cores."""
-	return {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count()}
-
-
-def processor():
-	"""Name of the processor."""
-	try:
-		with open("/proc/cpuinfo") as file:
-			return next((line.split(":", 1)[1].strip() for line in file if line.startswith("model name")), platform.machine())
-	except OSError:
-		return platform.machine()

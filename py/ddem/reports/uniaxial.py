@@ -8,10 +8,9 @@ Works on finished runs (:class:`studies.runs.Run`), so a report can be made agai
 	print(report.table())
 """
 import datetime
-import json
 import os
 
-from .. import broken_bonds
+from .. import broken_bonds, provenance
 from ..studies.runs import cost_ratios
 from . import figures, pages
 
@@ -114,14 +113,12 @@ class Report:
 
 	def write(self):
 		"""Write all files and return the path of report.html."""
-		summary = json.dumps(self.summary(), indent=2, allow_nan=False)
 		os.makedirs(self.folder, exist_ok=True)
+		provenance.write_json(self._path("summary.json"), self.summary(), indent=2, allow_nan=False)
 		for run in self.runs:
 			run.series.write(self._path(f"{run.model}.csv"))
 			if run.broken is not None:
 				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
-		with open(self._path("summary.json"), "w") as file:
-			file.write(summary + "\n")
 		pictures = pages.save({name: draw(self.runs) for name, draw in figures.ALL.items()}, self.folder, self.pdf) if self.pictures else {}
 		return pages.write(self.html(pictures), self._path("report.html"))
 

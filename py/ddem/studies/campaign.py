@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 from yade import config
 
+from .. import provenance
 from .commandline import plugin
 from .processes import Stopped, YadeProcesses, ending, tail
 
@@ -66,8 +67,10 @@ class Campaign:
 		"""Whether a run with the same options and the same plugin is there already."""
 		try:
 			with open(os.path.join(self.folder_of(case), FINISHED)) as file:
-				return json.load(file) == _stamp(case, self._current)
-		except (OSError, ValueError):
+				stamp = json.load(file)
+			stamp.pop(provenance.KEY, None)
+			return stamp == _stamp(case, self._current)
+		except (OSError, ValueError, AttributeError):
 			return False
 
 	def run(self):
@@ -120,8 +123,7 @@ class Campaign:
 		except (OSError, ValueError, KeyError) as error:
 			return 0.0, f"no summary.json that can be read in {folder}: {error}"
 		unfinished = os.path.join(folder, FINISHED + ".unfinished")
-		with open(unfinished, "w") as file:
-			json.dump(_stamp(case, versions), file, indent="\t")
+		provenance.write_json(unfinished, _stamp(case, versions), indent="\t")
 		os.replace(unfinished, os.path.join(folder, FINISHED))
 		return time.perf_counter() - start, None
 

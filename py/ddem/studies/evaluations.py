@@ -19,6 +19,8 @@ import os
 import time
 from dataclasses import dataclass
 
+from .. import provenance
+
 FORMAT = 1  #: of the lines; evaluations in another format are made again
 
 
@@ -64,7 +66,8 @@ class Store:
 		if record["error"] is None:
 			self._lines[record["key"]] = record
 		if self._file:
-			self._file.write(json.dumps(record, allow_nan=False).encode() + b"\n")
+			line = {**record, provenance.KEY: provenance.record()}
+			self._file.write(json.dumps(line, allow_nan=False).encode() + b"\n")
 			self._file.flush()
 			os.fsync(self._file.fileno())
 

@@ -34,7 +34,7 @@ found by itself). It reads like an example::
   slow ones, and its Debian package stands in the header of scripts/verify.py.
 - The first line of the docstring is the case's title, the other paragraphs are its text in the report; *Reference:* and *Expect:* are paragraphs of it. What
   comes after a blank line and is indented by a tab more is shown as a formula.
-- ``check(quantity, value, reference, tolerance, source)`` records a comparison: the error is |value − reference| over |reference|, or over ``scale`` where
+- ``check(quantity, value, reference, tolerance, source)`` records a comparison: the error is ``|value − reference|`` over ``|reference|``, or over ``scale`` where
   the reference is zero or small. The quantity ends with its unit in brackets. A case passes when all its checks do; one that raises has failed.
 - ``check.picture(draw, caption)`` calls ``draw()``, which returns a matplotlib figure or axes, at once and off the clock, and only where pictures are wanted.
 - The scene is empty when a case begins; a case may call O.reset() as often as it likes. What it needs of others is in :mod:`tools`.

@@ -88,10 +88,10 @@ class Picture:
 		"""As bytes of a PNG file."""
 		from matplotlib import rc_context
 
-		from .. import plots
+		from .. import plots, provenance
 		buffer = io.BytesIO()
 		with rc_context(plots.STYLE):
-			self.figure.savefig(buffer, format="png", dpi=200)
+			self.figure.savefig(buffer, format="png", dpi=200, metadata=provenance.metadata("png"))
 		return buffer.getvalue()
 
 

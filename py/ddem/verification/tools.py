@@ -81,6 +81,7 @@ class Recorder:
 	def __init__(self, function, every):
 		self._function, self._rows = function, []
 		_recorders[id(self)] = self
+		#: to be put into O.engines
 		self.engine = PyRunner(command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{id(self)}]._take()", iterPeriod=every, initRun=True)
 
 	def _take(self):

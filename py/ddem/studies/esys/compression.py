@@ -11,7 +11,8 @@ Reads   parameters.json    see package yade.ddem.studies.esys; here all in mm, N
 Writes  position.dat, force.dat    of the bottom and the top wall (six numbers a row), a row at the start and after every so many steps
         bonds.dat                  number of bonds, the same; ESyS-Particle appends to such files, so they must not exist
         finished.json              "pieces": wall time from record to record without the first step, in s
-Prints  "step N" now and then.
+
+Prints "step N" now and then.
 
 The model is that of the tutorial of ESyS-Particle (Weatherley et al.): bonds of class BrittleBeam, rotational friction between spheres that are not bonded,
 elastic walls that move towards each other with a speed that is ramped up linearly, viscous body damping.
@@ -43,7 +44,8 @@ def mass(radius, density, law):
 
 def rows(path, names, kinds):
 	with open(path, newline="") as file:
-		return [tuple(kind(row[name]) for name, kind in zip(names, kinds)) for row in csv.DictReader(file)]
+		lines = [line for line in file if not line.startswith("#")]
+		return [tuple(kind(row[name]) for name, kind in zip(names, kinds)) for row in csv.DictReader(lines)]
 
 
 def simulation(parameters, particles, bonds):
