@@ -228,8 +228,8 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 	for (std::size_t g = 0; g < s.group.size(); g++)
 		try {
 			s.group[g]->start(properties[g]);
-		} catch (const std::invalid_argument& error) {
-			reject(*made->cores[s.group[g]->begin], error.what());
+		} catch (const ddem::RefusedTriangle& error) {
+			reject(*made->cores[s.group[g]->begin + error.triangle], error.what());
 		}
 
 	for (const auto& b : made->nodes)

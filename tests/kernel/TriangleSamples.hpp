@@ -52,10 +52,10 @@ public:
 	}
 	double uniform(double from, double to) { return from + (to - from) * double(engine() >> 11) * 0x1p-53; }
 	Point  point(double size) { return { uniform(-size, size), uniform(-size, size) }; }
-	/// Counter-clockwise triangle of any shape down to a height of 1/20 of its longest edge, 1 mm to 10 m across.
-	Vertices skewedTriangle()
+	/// Counter-clockwise triangle of any shape down to a height of 1/20 of its longest edge, 1 mm to `widest` [m] across.
+	Vertices skewedTriangle(double widest = 10)
 	{
-		const double size = std::pow(10., uniform(-3, 1));
+		const double size = std::pow(10., uniform(-3, std::log10(widest)));
 		for (;;) {
 			Vertices     v       = { point(size), point(size), point(size) };
 			const double area2   = cross(v[1] - v[0], v[2] - v[0]);

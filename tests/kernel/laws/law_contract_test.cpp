@@ -124,7 +124,7 @@ template <class Law> struct Strained {
 		// loose triangles, so that each has its own strain
 		std::vector<Vertices> shapes;
 		for (std::size_t i = 0; i < count; i++) {
-			shapes.push_back(random.skewedTriangle());
+			shapes.push_back(random.skewedTriangle(0.1)); // larger ones a law with a length of its own may refuse
 			paths.emplace_back(random);
 		}
 		for (std::size_t row = 0; row < firstRow + count; row++) {

@@ -92,12 +92,18 @@ public:
 		columns.resize(triangles(), columnsOf(layout));
 		std::vector<std::vector<double>> values(own.size());
 		for (std::size_t i = 0; i < all.size(); i++) {
-			Properties mine = Law::propertiesOf(prepared, all[i]);
+			Properties mine {};
+			State      virgin {};
+			try {
+				mine   = Law::propertiesOf(prepared, all[i]);
+				virgin = Law::virgin(prepared, all[i]);
+			} catch (const std::invalid_argument& error) {
+				throw RefusedTriangle(i, error.what());
+			}
 			detail::PropertyValues list;
 			withMask<Law>(on, [&](auto mask) { Law::template properties<mask()>(mine, list); });
 			for (std::size_t p = 0; p < own.size(); p++)
 				values[p].push_back(list.list[p]);
-			const State virgin = Law::virgin(prepared, all[i]);
 			for (std::size_t k = 0; k < 3; k++)
 				store(i, k, virgin);
 		}

@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,17 @@ struct TriangleProperties {
 	        , fractureEnergy(fractureEnergy_)
 	        , bandFactor(bandFactor_)
 	        , initialDamage(initialDamage_)
+	{
+	}
+};
+
+/// A triangle that its law refuses.
+struct RefusedTriangle : std::invalid_argument {
+	std::size_t triangle; ///< counted from the group's first
+
+	RefusedTriangle(std::size_t triangle_, const char* why)
+	        : std::invalid_argument(why)
+	        , triangle(triangle_)
 	{
 	}
 };
@@ -95,7 +107,8 @@ public:
 	virtual bool                          knowsDamage() const       = 0; ///< whether damage() may exceed 0
 
 	// --- state
-	/// Virgin state of so many triangles, from `begin` to `end`. \throws std::logic_error unless there is one entry for each.
+	/// Virgin state of so many triangles, from `begin` to `end`.
+	/// \throws std::logic_error unless there is one entry for each; RefusedTriangle for what the law cannot have.
 	virtual void start(const std::vector<TriangleProperties>& triangles) = 0;
 	using StrainOf = std::function<std::array<PlaneTensor, 3>(std::size_t triangle)>;
 	/// Opens the energy book, which begins with the present strains, or leaves it.
