@@ -24,6 +24,7 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 
 	def sum(self, axis=None, **options):
 		"""Sum over the triangles (axis 0 or None); other axes as numpy does it."""
+		options = _said(options)
 		if options or not self._over_triangles(axis):
 			return self._values.sum(axis=axis, **options)
 		total = tree_sum(self._values, self._places)
@@ -31,7 +32,7 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 
 	def mean(self, axis=None, **options):
 		"""Mean over the triangles, each counted once whatever its area (axis 0 or None); other axes as numpy does it."""
-		options = {name: value for name, value in options.items() if value is not None}
+		options = _said(options)
 		if options or not self._over_triangles(axis):
 			return self._values.mean(axis=axis, **options)
 		count = self._values.size if axis is None else len(self._values)
@@ -39,11 +40,11 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 
 	def min(self, axis=None, **options):
 		"""Smallest value, exact in any order."""
-		return self._values.min(axis=axis, **options)
+		return self._values.min(axis=axis, **_said(options))
 
 	def max(self, axis=None, **options):
 		"""Largest value, exact in any order."""
-		return self._values.max(axis=axis, **options)
+		return self._values.max(axis=axis, **_said(options))
 
 	def _over_triangles(self, axis):
 		return axis is None or axis == 0
@@ -54,6 +55,8 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 		return values.copy() if copy else values
 
 	def __array_ufunc__(self, function, method, *inputs, **options):
+		if any(isinstance(x, Field) for x in options.get("out", ())):
+			raise ValueError("output array is read-only: what was written here would reach no triangle")
 		return getattr(function, method)(*(np.asarray(x) if isinstance(x, Field) else x for x in inputs), **options)
 
 	def __getitem__(self, index):
@@ -87,6 +90,11 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 
 	def __reduce__(self):
 		return Field, (np.array(self._values), self._places)
+
+
+def _said(options):
+	"""Numpy's functions hand over options that nobody has set as None."""
+	return {name: value for name, value in options.items() if value is not None}
 
 
 def tree_sum(values, places):

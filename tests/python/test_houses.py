@@ -25,6 +25,9 @@ TOPICS = {
 	"manual": "the extensions that make the manual",
 	"results": "what the files of scripts say of themselves",
 	"plugin": "that YADE has loaded the plugin",
+	"several_engines": "blocks of triangles with engines of their own",
+	"single_process": "the refusal to run in several MPI processes",
+	"unfelt_settings": "settings of YADE that triangles would not feel",
 	"verification_references": "the references of the verification cases",
 }
 #: house -> houses it must not import
