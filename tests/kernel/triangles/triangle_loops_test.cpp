@@ -179,9 +179,10 @@ TEST_P(ElementLoops, agreeWithTheElementFunctionsInAnyPartOfAGroup) // SIMD widt
 template <class Frame> void expectWidest(RotationTreatment rotation)
 {
 	for (const unsigned effects : { 0u, unsigned(LawEffects::Energy) }) {
-		const auto wide = LawLoops<Elastic, Frame, Avx2>::select(effects), baseline = LawLoops<Elastic, Frame, Baseline>::select(effects);
-		EXPECT_EQ(selectTileLoop<Elastic>(effects, rotation), processorHasAvx2() && wide ? wide : baseline);
-		EXPECT_EQ(selectTileLoop<Elastic>(effects, rotation, false), baseline);
+		const auto wide     = LawLoops<Elastic, Frame, Avx2>::select(effects).law;
+		const auto baseline = LawLoops<Elastic, Frame, Baseline>::select(effects).law;
+		EXPECT_EQ(selectTileLoops<Elastic>(effects, rotation).law, processorHasAvx2() && wide ? wide : baseline);
+		EXPECT_EQ(selectTileLoops<Elastic>(effects, rotation, false).law, baseline);
 		EXPECT_NE(wide, baseline);
 	}
 }
@@ -400,6 +401,8 @@ TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow,
                 double strain[3] = {};
                 read("strain", strain);
                 state.strain = { strain[0], strain[1], 0, strain[2] };
+                read("lastStrain", strain);
+                state.lastStrain = { strain[0], strain[1], 0, strain[2] };
                 read("plasticStrain", &state.plasticStrain.xx);
                 read("damageTensor", &state.damage.xx);
                 read("lastStress", &state.stress.xx);

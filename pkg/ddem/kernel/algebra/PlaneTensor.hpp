@@ -31,6 +31,13 @@ template <class Number> inline PlaneTensorOf<Number> operator*(const typename Sa
 	return { s * a.xx, s * a.yy, s * a.zz, s * a.xy };
 }
 
+/// Component by component.
+template <class Condition, class Number>
+inline PlaneTensorOf<Number> select(const Condition& condition, const PlaneTensorOf<Number>& yes, const PlaneTensorOf<Number>& no)
+{
+	return { select(condition, yes.xx, no.xx), select(condition, yes.yy, no.yy), select(condition, yes.zz, no.zz), select(condition, yes.xy, no.xy) };
+}
+
 template <class Number> inline Number trace(const PlaneTensorOf<Number>& a) { return a.xx + a.yy + a.zz; }
 
 /// a : b

@@ -50,6 +50,7 @@ struct ConcreteDamage : LawDefaults {
 		if constexpr (effects & ConcreteEffects::EquationOfState) visit.scalar("stiffening", "-", s.stiffening);
 		if constexpr (effects & ConcreteEffects::Energy) {
 			if constexpr (!flows && !damages) visit.inPlane("strain", "-", s.strain);
+			if constexpr (flows) visit.inPlane("lastStrain", "-", s.lastStrain);
 			visit.tensor("lastStress", "Pa", s.stress);
 			visit.scalar("plasticDissipation", "J/m³", s.plasticDissipation);
 			visit.scalar("damageDissipation", "J/m³", s.damageDissipation);
@@ -78,20 +79,49 @@ struct ConcreteDamage : LawDefaults {
 		return s;
 	}
 
-	/// The stress of the last step, which the book needs; and the strain, where only the book does.
+	/// Only flow is worth holding: it makes the law three times as dear as all that is left.
+	static constexpr bool holds(unsigned effects) { return effects & ConcreteEffects::Flow; }
+	template <unsigned effects, class Number>
+	static PlaneTensorOf<Number>
+	hold(const Prepared& law, const Properties<Number>&, const PlaneTensorOf<Number>& strain, const State<Number>& s)
+	{
+		const PlaneTensorOf<Number> elastic = strain - s.plasticStrain;
+		PlaneTensorOf<Number>       stress  = elasticStress(law.lambda, law.twoShear, elastic);
+		if constexpr (effects & ConcreteEffects::Damage) {
+			const auto damaged = doubleDot(s.damage, s.damage) > 0;
+			if (any(damaged)) {
+				const PlaneTensorOf<Number> degraded = degradedStress(
+				        law.lambda,
+				        law.twoShear,
+				        stiffnessEffect(law, 1 - s.closure),
+				        measureDamage(law, s.damage).loss,
+				        elastic);
+				stress = select(damaged, degraded, stress);
+			}
+		}
+		if constexpr (effects & ConcreteEffects::EquationOfState) return (1 + s.stiffening) * stress;
+		else
+			return stress;
+	}
+	template <class Number> static const PlaneTensorOf<Number>& evaluatedStrain(const State<Number>& s) { return s.strain; }
+	/// Up to η_0 = patientDamage.
+	template <unsigned effects, class Number> static auto flowMayWait(const Prepared& law, const State<Number>& s)
+	{
+		return doubleDot(s.damage, s.damage) <= law.patientSquare;
+	}
+	template <unsigned effects, class Number>
+	static void bookHeld(const PlaneTensorOf<Number>& strain, const PlaneTensorOf<Number>& stress, State<Number>& s)
+	{
+		s.lastStrain = strain;
+		s.stress     = stress;
+	}
+
+	/// The book begins where the law was last evaluated: the stress of then, which the book needs; and the strain, where only the book does.
 	template <unsigned effects> static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)
 	{
 		if constexpr (!(effects & (ConcreteEffects::Flow | ConcreteEffects::Damage))) s.strain = strain;
-		const PlaneTensor elastic = s.strain - s.plasticStrain;
-		PlaneTensor       stress  = elasticStress(law.lambda, law.twoShear, elastic);
-		if constexpr (effects & ConcreteEffects::Damage)
-			stress = degradedStress(
-			        law.lambda,
-			        law.twoShear,
-			        stiffnessEffect(law, 1 - s.closure),
-			        measureDamage(law, s.damage).loss,
-			        elastic);
-		s.stress = (1 + s.stiffening) * stress;
+		s.lastStrain = s.strain;
+		s.stress     = hold<effects>(law, Properties<double>(), s.strain, s);
 	}
 
 	template <unsigned effects, class Number>
@@ -108,9 +138,9 @@ struct ConcreteDamage : LawDefaults {
 	}
 	template <unsigned effects, class Number>
 	static EnergyDensities<Number>
-	energies(const Prepared&, const PlaneTensorOf<Number>&, const PlaneTensorOf<Number>&, const State<Number>& s)
+	energies(const Prepared&, const PlaneTensorOf<Number>& strain, const PlaneTensorOf<Number>& stress, const State<Number>& s)
 	{
-		return { storedEnergy(s), s.plasticDissipation, s.damageDissipation };
+		return { 0.5 * doubleDot(stress, strain - s.plasticStrain) + s.stiffeningEnergy, s.plasticDissipation, s.damageDissipation };
 	}
 	static double damage(const Prepared& law, const Properties<double>&, const State<double>& s) { return damageRatio(law, s); }
 	static double stiffening(const Prepared& law, const State<double>& s) { return stiffnessFactor(law, s); }

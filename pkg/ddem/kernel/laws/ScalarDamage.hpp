@@ -78,7 +78,7 @@ struct ScalarDamage : LawDefaults {
 	};
 
 	template <class Number> struct State {
-		Number                largestStrain;     ///< κ [-]
+		Number                largestStrain;     ///< κ [-], at first κ_0
 		PlaneTensorOf<Number> strain;            ///< ε of the step before [-]
 		Number                damageDissipation; ///< elastic energy that damage has released [J/m³]
 	};
@@ -91,7 +91,7 @@ struct ScalarDamage : LawDefaults {
 		}
 	}
 	/// \throws std::invalid_argument for damage that is there at the start, which as a tensor is not this law's.
-	static State<double> virgin(const Prepared&, const TriangleProperties& triangle)
+	static State<double> virgin(const Prepared& law, const TriangleProperties& triangle)
 	{
 		if (norm(triangle.initialDamage) > 0)
 			throw std::invalid_argument(
@@ -99,7 +99,9 @@ struct ScalarDamage : LawDefaults {
 			        + " [-] (its norm) must be zero: this law's damage is a number, not a tensor. For weak "
 			          "places give "
 			          "triangles a fractureEnergy of their own, or a material of less tensileStrength.");
-		return {};
+		State<double> s {};
+		s.largestStrain = law.firstStrain;
+		return s;
 	}
 
 	template <class Number> struct Properties {
@@ -136,6 +138,25 @@ struct ScalarDamage : LawDefaults {
 		     << 2 * energy / (p.tensileStrength * law.firstStrain)
 		     << " m, well below for a crack that softens in steps.";
 		throw std::invalid_argument(text.str());
+	}
+
+	static constexpr bool hasThreshold(unsigned) { return true; }
+	/// Where ε̃ may be above κ_0, without a root: with mean m and radius r of Mohr's circle, ε̃² = 2 (m² + r²) where both principal
+	/// strains are positive, m > r, and else ε̃ = m + r > κ_0 where r > κ_0 − m. A touch early, so that rounding does not matter.
+	template <unsigned effects, class Number>
+	static auto beyondThreshold(
+	        const Prepared& law,
+	        const Properties<Number>&,
+	        const PlaneTensorOf<Number>& strain)
+	{
+		using std::max;
+		const double first = 2 * (1 - 1e-12) * law.firstStrain; // of the circle's diameter, as all below
+		const Number sum = strain.xx + strain.yy, difference = strain.xx - strain.yy, shear = 2 * strain.xy;
+		const Number square  = difference * difference + shear * shear;
+		const Number tension = max(sum, Number(0.)), left = max(first - sum, Number(0.));
+		const Number tensionSquare = tension * tension;
+		return (tensionSquare > square && tensionSquare + square > 0.5 * first * first)
+		        || !(square < left * left); // NaN is beyond
 	}
 
 	/// 1 − d [-]

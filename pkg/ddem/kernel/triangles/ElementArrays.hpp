@@ -32,6 +32,7 @@ struct GroupConstants {
 /// An element (or a batch of them) as the loops see it.
 template <class Number> struct LoadedElement {
 	TriangleReference<Number>     reference;
+	PlaneVector<Number>           centre; ///< position of the core [m]
 	RelativeDisplacements<Number> fromCentre;
 	PlaneRotation<Number>         frame;
 	RelativeDisplacements<Number> du;
@@ -43,10 +44,10 @@ template <class Frame, class Number> inline LoadedElement<Number> loadElement(co
 	LoadedElement<Number>     element;
 	const PlaneVector<Number> first { L::load(a.arm[0] + i), L::load(a.arm[1] + i) };
 	const PlaneVector<Number> second { L::load(a.arm[2] + i), L::load(a.arm[3] + i) };
-	element.reference                = TriangleReference<Number>(first, second);
-	const PlaneVector<Number> centre = L::loadPoints(a.corePosition + 2 * i);
+	element.reference = TriangleReference<Number>(first, second);
+	element.centre    = L::loadPoints(a.corePosition + 2 * i);
 	for (int e = 0; e < 3; e++)
-		element.fromCentre[e] = L::gatherPoints(a.nodePosition, a.vertex[e] + i) - centre;
+		element.fromCentre[e] = L::gatherPoints(a.nodePosition, a.vertex[e] + i) - element.centre;
 	Number angle(0);
 	if constexpr (Frame::coreRotates) angle = L::load(a.coreAngle + i);
 	element.frame = Frame::rotation(element.reference, element.fromCentre, angle);

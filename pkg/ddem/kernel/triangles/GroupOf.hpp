@@ -5,6 +5,7 @@
 
 #include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -118,7 +119,7 @@ public:
 			own[p].values.assign(v.begin(), v.end());
 			if (!uniform) propertyBytes += triangles() * sizeof(double);
 		}
-		columns.fillUp();
+		fillUp();
 	}
 
 	void keepBook(bool energy, const StrainOf& strainOf) override
@@ -126,7 +127,10 @@ public:
 		if (energy == book) return;
 		book = energy;
 		pick();
-		if (!energy) return; // what the book had stays, and its columns, which come last
+		if (!energy) { // what the book had stays, and its columns, which come last
+			stateIsNew(); // nobody has looked at thresholds meanwhile
+			return;
+		}
 		if (!(layout & LawEffects::Energy)) {
 			const StateColumns old = columns;
 			layout                 = on | LawEffects::Energy;
@@ -157,13 +161,18 @@ public:
 
 	void advance(std::size_t tile, const ElementArrays& arrays, double dt, StepEnergy& sum) override
 	{
-		TileState<Law> t { &prepared, columns.tile(tile), columns.stride(tile), {}, {} };
+		TileState<Law> t { &prepared, columns.tile(tile), columns.stride(tile), {}, {}, held };
 		for (std::size_t p = 0; p < own.size(); p++) {
 			t.propertyStep[p] = own[p].step;
 			t.property[p]     = own[p].values.data() + own[p].step * tile * tileSize;
 		}
 		const std::size_t first = begin + tile * tileSize;
-		loop(arrays, constants, t, dt, first, std::min(first + tileSize, end), sum);
+		const std::size_t last  = std::min(first + tileSize, end);
+		if constexpr (Law::hasThreshold(Law::allEffects)) {
+			if (loops.below && untouched[tile] && loops.below(arrays, constants, t, dt, first, last, sum)) return;
+			untouched[tile] = false;
+		}
+		loops.law(arrays, constants, t, dt, first, last, sum);
 	}
 
 	std::array<PlaneTensor, 3>
@@ -174,7 +183,10 @@ public:
 		for (std::size_t k = 0; k < 3; k++) {
 			State s = load(triangle, k);
 			withMask<Law>(on, [&](auto mask) {
-				result[k] = Law::template advance<mask()>(prepared, mine, strain[k], dt, s);
+				double time = dt;
+				if constexpr (Law::holds(mask()))
+					if (Law::template flowMayWait<mask()>(prepared, s)) time += flowClock.time;
+				result[k] = Law::template advance<mask()>(prepared, mine, strain[k], time, s);
 			});
 		}
 		return result;
@@ -217,12 +229,26 @@ private:
 	bool                                             book     = false;
 	RotationTreatment                                rotation = RotationTreatment::Cosserat;
 	bool                                             widest   = true;
-	TileLoop<Law>                                    loop     = nullptr;
+	TileLoops<Law>                                   loops;
+	std::vector<char>                                untouched; ///< tiles that have not left it; empty for laws without threshold
 	std::vector<Property>                            own;
 	std::vector<std::pair<const char*, const char*>> propertyNames;
 
-	void pick() { loop = selectTileLoop<Law>(on | (book ? unsigned(LawEffects::Energy) : 0), rotation, widest); }
+	void pick() { loops = selectTileLoops<Law>(on | (book ? unsigned(LawEffects::Energy) : 0), rotation, widest); }
 	void prepare(RotationTreatment newRotation) { prepare(newRotation, true); }
+
+	void stateIsNew() override
+	{
+		if constexpr (!Law::hasThreshold(Law::allEffects)) return;
+		State               virgin = Law::virgin(prepared, TriangleProperties());
+		std::vector<double> number(columnsOf(on)); // without what only the book has, which comes last
+		withMask<Law>(on, [&](auto mask) { Law::template fields<mask()>(virgin, StoreFields<double> { number.data(), 1 }); });
+		untouched.assign(tiles(), true);
+		for (std::size_t i = 0; i < triangles(); i++)
+			for (std::size_t k = 0; k < 3; k++)
+				for (std::size_t c = 0; c < number.size(); c++)
+					if (!(columns.row(i, k)[c * columns.columnStep(i)] == number[c])) untouched[i / tileSize] = false;
+	}
 
 	static ListFields fieldsOf(unsigned mask)
 	{

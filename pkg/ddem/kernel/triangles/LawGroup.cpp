@@ -1,6 +1,9 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 
+#include <limits>
+#include <stdexcept>
+
 namespace yade::ddem {
 
 bool processorHasAvx2()
@@ -38,6 +41,22 @@ void LawGroup::set(const StateField& f, std::size_t triangle, std::size_t k, con
 std::size_t LawGroup::bytesPerTriangle() const
 {
 	return 3 * columns.columns() * sizeof(double) + (triangles() ? propertyBytes / triangles() : 0);
+}
+
+void LawGroup::beginStep(double dt)
+{
+	if (flowInterval < 1) throw std::invalid_argument("flowInterval = 0 [steps] must be at least 1, which solves flow in every step.");
+	flowClock.steps++;
+	flowClock.time += dt;
+	held.rest      = rest * std::numeric_limits<double>::epsilon();
+	held.flowWaits = flowInterval > 1 || flowClock.steps > 1;
+	held.flowIsDue = flowClock.steps >= flowInterval;
+	held.flowTime  = flowClock.time;
+}
+
+void LawGroup::endStep()
+{
+	if (held.flowIsDue) flowClock = FlowClock();
 }
 
 } // namespace yade::ddem

@@ -66,6 +66,8 @@ struct LawDefaults {
 	static constexpr bool elasticWithoutEffects = false;
 	/// Whether the moduli can grow above the initial ones (stiffening() then tells by how much).
 	static constexpr bool stiffens(unsigned) { return false; }
+	/// Whether it may turn work into heat or cracks; else energies() of the two are not added up.
+	static constexpr bool dissipates(unsigned) { return true; }
 	/// Whether it can break (damage() then tells how much).
 	static constexpr bool                damages(unsigned) { return false; }
 	static const std::vector<LawEffect>& effects()
@@ -81,6 +83,17 @@ struct LawDefaults {
 	template <unsigned effects, class P, class Visit> static void properties(P&, Visit&&) { }
 	template <class Prepared> static Properties<double> propertiesOf(const Prepared&, const TriangleProperties&) { return {}; }
 
+	/// Whether it may be held: see LawLoops.hpp. Then it has
+	///     hold<effects>(law, own, strain, state): the stress of a held step,
+	///     evaluatedStrain(state): the strain of the last evaluation,
+	///     flowMayWait<effects>(law, state): where flow may wait, see LawGroup::flowInterval,
+	///     bookHeld<effects>(strain, stress, state): with the book, keeps what it needs of a held step.
+	static constexpr bool holds(unsigned) { return false; }
+	/// Whether a virgin sub-element is plainly elastic below a threshold, with moduli law.lambda and law.twoShear, and keeps its state
+	/// there (but for what only the book needs). Then it has
+	///     beyondThreshold<effects>(law, own, strain): where elastic stress may no longer do; strain has no zz.
+	static constexpr bool hasThreshold(unsigned) { return false; }
+
 	/// Called when the energy book is opened: fields that only the book has get their values.
 	template <unsigned effects, class Prepared, class State> static void openBook(const Prepared&, const PlaneTensor&, State&) { }
 
@@ -94,6 +107,26 @@ class LawGroup {
 public:
 	std::size_t    begin = 0, end = 0; ///< rows in the system
 	GroupConstants constants;
+
+	/** Bound on the change of strain of a sub-element at rest, as a multiple of the round-off that its strain carries; see LawLoops.hpp.
+	 * 0: only strains that are equal to the last bit; negative: no rest. */
+	double rest = 4;
+	/** Steps from one solution of flow to the next; in those between, stress is elastic (held, see LawLoops.hpp). The step that solves it
+	 * takes the whole strain since the last solution, and the whole time. Sub-elements with damage above a small bound that their law
+	 * states do not wait: each of their steps solves it.
+	 *
+	 * Error for monotone strain: at most M m Δε of stress, m the interval, Δε the largest strain of a step, M the largest elastic
+	 * modulus, λ + 2μ. Why: along such a path stress follows σ' = M (1 − g(σ)), with g ≥ 0 growing with σ, so two solutions approach each
+	 * other; an implicit step of strain h adds an error of at most h times the variation of σ' within it, and σ' falls from M to zero at
+	 * most once: at most M h in all, from below, for h = m Δε. (One step at a time errs on the same side, so the difference is less.)
+	 * A held step lies above: the predictor has done without flow for at most m − 1 steps, which is at most M (m − 1) Δε. Each reversal of
+	 * strain adds the same once more, and fades with the strain that follows. */
+	unsigned flowInterval = 1;
+	/// What has gone by since flow was last solved, as far as it waits. Saved with a sample, so that it goes on with the same bits.
+	struct FlowClock {
+		unsigned steps = 0;
+		double   time  = 0; ///< [s]
+	} flowClock;
 
 	virtual ~LawGroup() = default;
 	virtual std::unique_ptr<LawGroup> clone() const = 0;
@@ -122,7 +155,11 @@ public:
 	void get(const StateField&, std::size_t triangle, std::size_t k, double* to) const;
 	void set(const StateField&, std::size_t triangle, std::size_t k, const double* from);
 	/// To be called after the last set().
-	void         fillUp() { columns.fillUp(); }
+	void fillUp()
+	{
+		columns.fillUp();
+		stateIsNew();
+	}
 	/// Bytes that the state of a triangle takes: its columns, and what it has of its own.
 	std::size_t         bytesPerTriangle() const;
 	const StateColumns& state() const { return columns; }
@@ -130,10 +167,14 @@ public:
 	// --- what it does
 	/// Picks the loop for a treatment of rotation. `widest` false takes the instructions that every processor has.
 	virtual void prepare(RotationTreatment rotation, bool widest = true) = 0;
+	/// To be called before the tiles of a step, and after them.
+	void beginStep(double dt);
+	void endStep();
 	/// One step of a tile; see TileLoop. The arrays' rows are those of the system.
 	virtual void advance(std::size_t tile, const ElementArrays&, double dt, StepEnergy&) = 0;
 	std::size_t  tiles() const { return tilesOf(triangles()); }
-	/// Stress that the law gives to the strains within dt [s], from the present state, which stays as it is [Pa].
+	/// Stress that the law gives to the strains after another dt [s], from the present state, which stays as it is; flow that waits is
+	/// solved [Pa].
 	virtual std::array<PlaneTensor, 3>
 	stress(std::size_t triangle, const std::array<PlaneTensor, 3>& strain, double dt) const = 0;
 	/// Damage of the sub-elements [-], 0 intact to 1.
@@ -144,6 +185,9 @@ public:
 	virtual double property(const std::string& name, std::size_t triangle) const = 0;
 
 protected:
+	virtual void stateIsNew() { } ///< called when it was not made by steps
+
+	HeldSteps               held; ///< of this step
 	StateColumns            columns;
 	std::vector<StateField> fieldList;
 	std::size_t             propertyBytes = 0; ///< of all triangles

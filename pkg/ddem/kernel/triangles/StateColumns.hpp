@@ -119,6 +119,35 @@ private:
 	}
 };
 
+/// Writes those of some lanes, and leaves the others.
+template <class Number, class Lane> struct StoreSomeFields {
+	double*     to;
+	std::size_t stride;
+	Lane        lanes;
+
+	void scalar(const char*, const char*, const Number& from) { next(from); }
+	void inPlane(const char*, const char*, const PlaneTensorOf<Number>& from)
+	{
+		next(from.xx);
+		next(from.yy);
+		next(from.xy);
+	}
+	void tensor(const char*, const char*, const PlaneTensorOf<Number>& from)
+	{
+		next(from.xx);
+		next(from.yy);
+		next(from.zz);
+		next(from.xy);
+	}
+
+private:
+	void next(const Number& value)
+	{
+		Lanes<Number>::store(to, select(lanes, value, Lanes<Number>::load(to)));
+		to += stride;
+	}
+};
+
 /** Columns of the sub-elements of so many triangles. A tile is one piece of memory: column after column, in a column sub-element
  * after sub-element, in a sub-element triangle after triangle, filled up to whole batches. */
 class StateColumns {

@@ -86,6 +86,8 @@ void TriangleSystem::keepBook(bool energy)
 StepEnergy TriangleSystem::step(const StepSettings& settings)
 {
 	keepBook(settings.energy);
+	for (auto& g : group)
+		g->beginStep(settings.dt);
 	Points&           node  = motion.node;
 	const std::size_t tiles = tile.size(), nodeTiles = motion.nodeTiles();
 	const StepsAround steps { motion.lastTimeStep > 0 ? motion.lastTimeStep : settings.dt, settings.dt };
@@ -124,6 +126,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 		}
 	}
 
+	for (auto& g : group)
+		g->endStep();
 	motion.lastTimeStep = settings.dt;
 	double speedSquared = 0;
 	for (const auto& sum : sums)

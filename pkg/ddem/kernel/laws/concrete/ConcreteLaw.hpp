@@ -13,10 +13,16 @@ namespace yade::ddem {
 /// Adds the step from `old` to `now` to the energies, so that ½(σ_old + σ_new):dε = d(stored) + d(plastic) + d(damage) holds to round-off in every step.
 /// It rests on the identity, a and b being the elastic strains before and after, ½(σ_old + σ_new):(b − a) = d(½σ:ε_e) − ½ a:(C_new − C_old):b. The last
 /// term is the energy that the change of stiffness releases at fixed elastic strain. What of it the equation of state causes stays in store, to come back with
-/// the pressure. The rest, and the work on the slip of closing cracks, is dissipated by damage. `flow` is the plastic strain that flow added.
-template <class Number> inline void bookEnergy(const ConcreteStateOf<Number>& old, const PlaneTensorOf<Number>& flow, ConcreteStateOf<Number>& now)
+/// the pressure. The rest, and the work on the slip of closing cracks, is dissipated by damage. `flow` is the plastic strain that flow added. Between the last
+/// evaluation and `oldStrain`, the strain of the step before, stress was elastic with the stiffness of then, as `old.stress` is.
+template <class Number>
+inline void bookEnergy(
+        const ConcreteStateOf<Number>& old,
+        const PlaneTensorOf<Number>&   oldStrain,
+        const PlaneTensorOf<Number>&   flow,
+        ConcreteStateOf<Number>&       now)
 {
-	const PlaneTensorOf<Number> before = old.strain - old.plasticStrain, after = now.strain - now.plasticStrain;
+	const PlaneTensorOf<Number> before = oldStrain - old.plasticStrain, after = now.strain - now.plasticStrain;
 	const PlaneTensorOf<Number> mean = 0.5 * (old.stress + now.stress), slip = now.plasticStrain - old.plasticStrain - flow;
 	const Number                across   = doubleDot(now.stress, before);
 	const Number                released = 0.5 * (doubleDot(old.stress, after) - across);
@@ -130,7 +136,10 @@ inline void advanceConcrete(
 		factor          = 1 + next.stiffening;
 	}
 	next.stress = factor * stress;
-	if constexpr (books) bookEnergy(state, increment.plasticStrain, next);
+	if constexpr (books) {
+		if constexpr (flows) next.lastStrain = newStrain;
+		bookEnergy(state, flows ? state.lastStrain : state.strain, increment.plasticStrain, next);
+	}
 	state = next;
 }
 

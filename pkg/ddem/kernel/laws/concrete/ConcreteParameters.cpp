@@ -4,6 +4,7 @@
 #include <pkg/ddem/kernel/algebra/ElasticModuli.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace yade::ddem {
 
@@ -40,6 +41,10 @@ PreparedConcrete::PreparedConcrete(const ConcreteParameters& p)
         , perFrictionPressure(1 / p.frictionPressure)
         , perReferenceRate(1 / p.referenceRate)
         , localisedIntegrity(p.residual + (1 - p.residual) / (1 + std::pow(localisedDamage, p.damageExponent)))
+        , patientSquare(
+                  p.residual + patientDamage < 1
+                          ? std::pow(patientDamage / (1 - p.residual - patientDamage), 2 / p.damageExponent)
+                          : std::numeric_limits<double>::infinity())
         , smallestEnergy(1e-6 * p.fractureEnergy)
         , eosPower(p.eosExponent)
         , flowPower(p.flowExponent)

@@ -64,6 +64,9 @@ struct ConcreteParameters : ElasticParameters {
 /// 0.06 to 0.19 by its rate (0.2 to 0.3 with a tenth of its fracture energy), in compression at 0.2 to 0.5.
 constexpr double localisedDamage = 0.5;
 
+/// Damage parameter η_0 [-] up to which flow may wait for its turn (LawGroup::flowInterval): beyond, the stiffness changes while it waits.
+constexpr double patientDamage = 0.01;
+
 /// Parameters with everything worked out that the inner loop need not repeat.
 struct PreparedConcrete {
 	/// Checks the parameters (throws std::invalid_argument) and prepares them.
@@ -76,6 +79,7 @@ struct PreparedConcrete {
 	double             perFrictionPressure; ///< 1/p_q0 [1/Pa]
 	double             perReferenceRate;    ///< 1/ė_0 [s]
 	double             localisedIntegrity;  ///< 1 − η_0 at localisedDamage [-]
+	double             patientSquare;       ///< Ω:Ω at patientDamage [-]
 	double             smallestEnergy;      ///< Fracture energy that a drawn one is raised to where it is less [J/m³]
 	Power              eosPower, flowPower, ratePower, frictionPower, damagePower;
 };

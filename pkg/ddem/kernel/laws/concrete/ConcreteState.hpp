@@ -10,7 +10,8 @@ namespace yade::ddem {
 /// The energies are filled only where ConcreteEffects::Energy is on.
 template <class Number> struct ConcreteStateOf {
 	PlaneTensorOf<Number> stress;             ///< σ [Pa], tension positive
-	PlaneTensorOf<Number> strain;             ///< ε [-]
+	PlaneTensorOf<Number> strain;             ///< ε when the law was last evaluated [-]
+	PlaneTensorOf<Number> lastStrain;         ///< ε of the last step, which may have been held [-]; for the book of flow
 	PlaneTensorOf<Number> plasticStrain;      ///< ε_p [-]
 	PlaneTensorOf<Number> damage;             ///< Ω [-], positive semi-definite
 	Number                stiffening;         ///< B/B_0 − 1 of the equation of state [-], ≥ 0
@@ -42,7 +43,7 @@ namespace ConcreteEffects {
 	};
 }
 
-/// Stored energy [J/m³]: ½σ:ε_e + stiffeningEnergy.
+/// Stored energy [J/m³] of a step in which the law was evaluated: ½σ:ε_e + stiffeningEnergy.
 template <class Number> inline Number storedEnergy(const ConcreteStateOf<Number>& state)
 {
 	return 0.5 * doubleDot(state.stress, state.strain - state.plasticStrain) + state.stiffeningEnergy;
