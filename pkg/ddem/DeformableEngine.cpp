@@ -47,6 +47,7 @@ SampleSettings DeformableEngine::settings(const Scene& of) const
 	s.groupMask   = groupMask;
 	s.ids         = ids;
 	s.energy      = of.trackEnergy;
+	s.flowInterval = flowInterval;
 	for (const DeformableEngine* other : in(of)) {
 		if (other == this) continue;
 		if (other->groupMask & groupMask)
@@ -65,6 +66,9 @@ void DeformableEngine::postLoad(DeformableEngine&)
 	rotationTreatment();
 	if (inverted != "stop" && inverted != "warn")
 		throw std::invalid_argument("DeformableEngine.inverted = '" + inverted + "' is unknown; use 'stop' or 'warn'");
+	if (flowInterval < 1)
+		throw std::invalid_argument(
+		        "DeformableEngine.flowInterval = " + std::to_string(flowInterval) + " steps must be at least 1 (1: flow in every step)");
 	if (groupMask <= 0) throw std::invalid_argument("DeformableEngine.groupMask = " + std::to_string(groupMask) + " must be a positive bit mask");
 	stale = true; // read anew at the next step; the state is kept
 }

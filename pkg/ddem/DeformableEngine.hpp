@@ -60,6 +60,8 @@ public:
 			"NewtonIntegrator with a damping other than YADE's default is refused, since triangles would not feel it."))
 		((int,groupMask,1<<20,Attr::triggerPostLoad,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`. "
 			"Where O.engines has several DeformableEngine each needs a bit of its own."))
+		((int,flowInterval,1,Attr::triggerPostLoad,"Steps from one solution of viscoplastic flow to the next; in between undamaged triangles are elastic with the plastic strain they have, and "
+			"damaged ones flow in every step. Cheaper, and for monotone strain off by no more than the stress that the strain of so many steps makes (E m Δε); vibrations faster than the interval flow less."))
 		((std::string,inverted,"stop",Attr::triggerPostLoad,"What to do when a triangle is inside out, that is, its vertices have changed their sense: 'stop' the run with the triangle, its place and the ratio of its areas, or 'warn' once. "
 			"Looked at every 50 steps (10 with an equation of state). A sample that is crushed beyond its bearing capacity may be let go on."))
 		((std::vector<Body::id_t>,ids,,Attr::triggerPostLoad,"Ids of the triangles that this engine moves, with their nodes. Empty: those whose group mask has the engine's bit, "

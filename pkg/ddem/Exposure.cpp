@@ -54,6 +54,7 @@ StateStore Exposure::store() const
                         to.lastVelocity[c] = last[2 * i + c];
                 }
 	};
+	carried.flowClock                      = s.group.front()->flowClock; // all groups take the same steps
 	for (std::size_t i = 0; i < nodes.size(); i++)
 		point(carried.nodes[nodeId[i]], s.motion.node, book.nodeVelocity, nodeBlocked[i], i);
 	for (std::size_t i = 0; i < cores.size(); i++) {

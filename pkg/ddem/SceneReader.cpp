@@ -213,6 +213,8 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			const LawOfMaterial law   = material.ownLaw();
 			auto                group = law.makeGroup();
 			group->begin              = i;
+			group->flowInterval       = unsigned(settings.flowInterval);
+			group->flowClock          = known.flowClock;
 			group->constants          = { shape.thickness, material.shear() * material.rotationStiffness };
 			s.group.emplace_back(std::move(group));
 			properties.emplace_back();

@@ -17,6 +17,7 @@ struct SampleSettings {
 	std::vector<Body::id_t> otherIds;            ///< taken by other engines
 	bool                    shared      = false; ///< another engine takes bodies without a bit as well
 	bool                    energy      = false; ///< whether the energy book is open
+	int                     flowInterval = 1;    ///< see ddem::LawGroup::flowInterval
 };
 
 /** Builds arrays from the deformable bodies that an engine takes. Triangles of a kind (material, thickness) stand together, in the order

@@ -118,7 +118,7 @@ StateStore::Saved StateStore::saved() const
 		to.names.push_back(line.str());
 	}
 	std::vector<Real>& all = to.numbers;
-	all = { Real(nodes.size()), Real(cores.size()), pendingWork[0], pendingWork[1], pendingWork[2], lastTimeStep };
+	all = { Real(nodes.size()), Real(cores.size()), pendingWork[0], pendingWork[1], pendingWork[2], lastTimeStep, Real(flowClock.steps), flowClock.time };
 	for (const auto& [id, point] : nodes)
 		writePoint(all, id, point);
 	for (const auto& [id, core] : cores) {
@@ -151,7 +151,9 @@ StateStore StateStore::fromSaved(const Saved& saved)
 	const auto   nNodes = from.count(), nCores = from.count();
 	for (auto& work : store.pendingWork)
 		work = from.next();
-	store.lastTimeStep = from.next();
+	store.lastTimeStep    = from.next();
+	store.flowClock.steps = unsigned(from.next());
+	store.flowClock.time  = from.next();
 	for (std::size_t i = 0; i < nNodes; i++)
 		readPoint(from, store.nodes[Body::id_t(from.next())]);
 	for (std::size_t i = 0; i < nCores; i++) {

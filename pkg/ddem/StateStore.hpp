@@ -31,6 +31,7 @@ public:
 	std::map<Body::id_t, Core>  cores;
 	std::array<Real, 3>         pendingWork {};   ///< of the energy book [J]: gravity, external, damping
 	Real                        lastTimeStep = 0; ///< [s]
+	ddem::LawGroup::FlowClock   flowClock;        ///< of all groups
 
 	/// Takes what the law of a triangle remembers.
 	void keep(Body::id_t id, const ddem::LawGroup& group, std::size_t triangle);
