@@ -28,8 +28,8 @@ public:
 		"breaks at :math:`f_t/(\\sqrt2\\nu)`, 3.5 :math:`f_t` with the defaults, where concrete bears 10, "
 		"and cracks that close do not get their stiffness back. :math:`f_t` and :math:`G_F` hold in uniaxial "
 		"stress; in plane strain with free sides both are :math:`1/(1-\\nu^2)` of that. Strain may gather in "
-		"some of a triangle's sub-elements: a crack through a row of triangles takes two thirds to all of "
-		":math:`G_F`, without a trend with the size.",
+		"some of a triangle's sub-elements: a crack takes two thirds or more of :math:`G_F`, whatever the "
+		"size (from 20 to 5 mm 0.74 in alternating, 0.75 in unstructured and 0.91 to 1.05 in crossed meshes).",
 		SCALAR_DAMAGE_PARAMETERS(DDEM_ATTRIBUTE) SCALAR_DAMAGE_EFFECTS(DDEM_SWITCH),
 		createIndex(); takeElasticityOfLaw();
 	);

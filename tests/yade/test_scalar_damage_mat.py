@@ -1,12 +1,15 @@
 # GPL v2 or later, see LICENSE.
-# Isotropic damage in scenes: a bar that breaks, one triangle against the material point, saving, what a block tells, refusals. The law's
-# numbers are tested in tests/kernel/laws/scalar_damage_test.cpp.
+# Isotropic damage in scenes: a bar that breaks, one triangle against the material point, saving, what a block tells,
+# refusals. The law's numbers are tested in tests/kernel/laws/scalar_damage_test.cpp.
 import math
 
 import numpy as np
 import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade import DeformableEngine, Matrix3, O, ScalarDamageMat, ddem
+from yade.ddem import vtk
 from yade.ddem.materialpoint import MaterialPoint
 
 from deformable_samples import append_bodies, bodies, start, steps
@@ -15,13 +18,13 @@ G_F, STRENGTH = 100, 3e6  # [J/m²], [Pa]: the defaults
 
 
 def bar(height, rows=3, speed=0.3):
-	"""A bar of rows of cells of this height [m], of which the middle one is weaker, pulled apart; its engine keeps the energy book."""
+	"""Rows of cells of this height [m], the middle one weaker, pulled apart; with the energy book."""
 	for label, share in (("strong", 1), ("weak", 0.7)):
-		O.materials.append(ScalarDamageMat(label=label, young=30e9, poisson=0, tensileStrength=share * STRENGTH))
+		strength = share * STRENGTH
+		O.materials.append(ScalarDamageMat(label=label, young=30e9, poisson=0, tensileStrength=strength))
 	middle = rows // 2 * height
-	mesh = ddem.mesh.rectangle(
-		4 * height, rows * height, height, pattern="alternating", regions={"weak": ddem.mesh.box(0, middle, 4 * height, middle + height)}
-	)
+	weak = ddem.mesh.box(0, middle, 4 * height, middle + height)
+	mesh = ddem.mesh.rectangle(4 * height, rows * height, height, pattern="alternating", regions={"weak": weak})
 	block = ddem.append(mesh, {"": "strong", "weak": "weak"})
 	block.hold(block.boundary("bottom"), "y")
 	block.hold(block.node_ids[:1], "x")
@@ -47,7 +50,7 @@ def test_a_bar_in_tension_softens_and_breaks_for_the_fracture_energy(height):
 	assert abs(np.mean(stress[-10:])) < 0.01 * STRENGTH
 	weak = block.mesh.region("weak")
 	assert (block.damage[weak] > 0.9).all() and (np.delete(block.damage, weak) == 0).all()
-	# two thirds to all of G_F, since sub-elements at an edge along the crack may unload: see the kernel's test of this name
+	# two thirds to all of G_F, since sub-elements at an edge along the crack may unload: see the kernel's test
 	assert 2 / 3 * G_F < O.energy["damage"] / area < 1.02 * G_F
 	assert O.energy.total() == pytest.approx(total_at_start(speed, height), rel=1e-3, abs=1e-3 * O.energy["damage"])
 
@@ -95,12 +98,13 @@ def test_a_broken_bar_is_saved_and_goes_on_bit_by_bit(tmp_path):
 		if not load:
 			assert engine.values("damage").max() > 0.5
 		steps(400)
-		results.append([engine.values(name) for name in ("stress", "damage", "largestStrain", "damageDissipation")] + [O.energy["damage"]])
+		names = ("stress", "damage", "largestStrain", "damageDissipation")
+		results.append([engine.values(name) for name in names] + [O.energy["damage"]])
 	for first, second in zip(*results):
 		assert np.array_equal(first, second)
 
 
-def test_fields_come_by_themselves():
+def test_fields_come_by_themselves(tmp_path):
 	block, engine = bar(0.02)
 	steps(400)
 	assert {name: (unit, components) for name, unit, components in engine.fields()} == {
@@ -117,6 +121,14 @@ def test_fields_come_by_themselves():
 	assert 1 - block.sub_element_damage[weak] == pytest.approx(expected[weak], rel=1e-12)
 	volume = np.asarray(block.area)[:, None] / 3
 	assert (engine.values("damageDissipation") * volume).sum() == pytest.approx(O.energy["damage"], rel=1e-12)
+	vtk.Recorder(block, str(tmp_path / "block"))()
+	reader = vtkXMLUnstructuredGridReader()
+	reader.SetFileName(str(next(tmp_path.rglob("*.vtu"))))
+	reader.Update()
+	cells = reader.GetOutput().GetCellData()
+	for name in ("largestStrain", "damageDissipation"):
+		assert block.field(name).shape == (len(block.triangle_ids), 3)
+		assert vtk_to_numpy(cells.GetArray(name)) == pytest.approx(block.field(name).mean(axis=1), rel=1e-6)
 
 
 def test_triangles_have_their_own_fracture_energy():
@@ -133,23 +145,27 @@ def test_triangles_have_their_own_fracture_energy():
 
 def test_what_it_has_not_is_refused_with_place_and_way_out():
 	O.materials.append(ScalarDamageMat(label="concrete"))
-	limit = 2 * G_F * O.materials[0].young / STRENGTH**2  # Bažant and Oh (1983): beyond it the crack would snap back
+	limit = 2 * G_F * O.materials[0].young / STRENGTH**2  # Bažant and Oh (1983): beyond it stress would snap back
 	ddem.append(ddem.mesh.rectangle(4 * limit, 2 * limit, 2 * limit, pattern="alternating"), "concrete")
-	with pytest.raises(ValueError, match=r"(?s)body \d+ at .*ScalarDamage: a triangle of area .* m².*fracture energy of 100 J/m².*Keep √\(2·area\) below"):
+	words = r"body \d+ at .*ScalarDamage: a triangle of area .* m².*energy of 100 J/m².*Keep √\(2·area\) below"
+	with pytest.raises(ValueError, match=words):
 		start()
-	for change, text in (
-		(lambda shape: setattr(shape, "bandFactor", 2), "bandFactor = 2.*leave crack_band out"),
-		(lambda shape: setattr(shape, "initialDamage", Matrix3(0.1, 0, 0, 0, 0, 0, 0, 0, 0)), "initialDamage = 0.1.*fractureEnergy of their own"),
+	for name, value, text in (
+		("bandFactor", 2, "bandFactor = 2.*leave crack_band out"),
+		("initialDamage", Matrix3(0.1, 0, 0, 0, 0, 0, 0, 0, 0), "initialDamage = 0.1.*fractureEnergy of"),
 	):
 		O.reset()
 		O.materials.append(ScalarDamageMat(label="concrete"))
 		block = ddem.append(ddem.mesh.rectangle(0.02, 0.02, 0.01), "concrete")
-		change(O.bodies[int(block.triangle_ids[5])].shape)
+		setattr(O.bodies[int(block.triangle_ids[5])].shape, name, value)
 		with pytest.raises(ValueError, match=f"body {block.triangle_ids[5]} at .*{text}"):
 			start()
 
 
-@pytest.mark.parametrize("name, value, unit", [("tensileStrength", -1, "Pa"), ("fractureEnergy", 0, "J/m²"), ("residual", math.nan, "[-]")])
+BAD = [("tensileStrength", -1, "Pa"), ("fractureEnergy", 0, "J/m²"), ("residual", math.nan, "[-]")]
+
+
+@pytest.mark.parametrize("name, value, unit", BAD)
 def test_parameters_out_of_bounds_are_refused(name, value, unit):
 	with pytest.raises(ValueError) as error:
 		ScalarDamageMat(label="concrete", **{name: value})

@@ -1,12 +1,15 @@
 # GPL v2 or later, see LICENSE.
-# Steel that yields in scenes: strength of a block, one triangle against the material point, saving, what a block tells. The law's numbers
-# are tested in tests/kernel/laws/von_mises_test.cpp.
+# Steel that yields in scenes: strength of a block, one triangle against the material point, saving, what a block tells.
+# The law's numbers are tested in tests/kernel/laws/von_mises_test.cpp.
 import math
 
 import numpy as np
 import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade import DeformableEngine, O, VonMisesMat, ddem
+from yade.ddem import vtk
 from yade.ddem.materialpoint import MaterialPoint
 
 from deformable_samples import append_bodies, bodies, start, steps
@@ -15,7 +18,7 @@ YIELD = 270e6  # [Pa]: steel 304L of Zubelewicz (2018), the default
 
 
 def stretched(speed=2.0, **parameters):
-	"""A block of steel whose top and bottom move apart, from the start at a uniform rate; its engine keeps the energy book."""
+	"""A block of steel whose top and bottom move apart uniformly; its engine keeps the energy book."""
 	O.materials.append(VonMisesMat(label="steel", **parameters))
 	block = ddem.append(ddem.mesh.rectangle(0.02, 0.04, 0.005), "steel")
 	block.hold(block.boundary("bottom"), "y")
@@ -44,7 +47,8 @@ def test_a_block_of_steel_yields_at_270_MPa():
 	assert np.mean(forces[-20:]) == pytest.approx(2 / math.sqrt(3) * YIELD, rel=0.01)
 	# work of the yield stress on the accumulated plastic strain
 	volume = np.asarray(block.area)[:, None] / 3
-	assert O.energy["plasticFlow"] == pytest.approx((YIELD * engine.values("accumulatedPlasticStrain") * volume).sum(), rel=1e-3)
+	work = (YIELD * engine.values("accumulatedPlasticStrain") * volume).sum()
+	assert O.energy["plasticFlow"] == pytest.approx(work, rel=1e-3)
 	assert O.energy["damage"] == 0 and (block.damage == 0).all()
 	start_energy = 0.5 * 8030 * 0.02 * 0.04 * speed**2 / 3
 	assert O.energy.total() == pytest.approx(start_energy, abs=1e-3 * O.energy["plasticFlow"])
@@ -76,9 +80,10 @@ def test_a_triangle_follows_the_material_point(hardening):
 		steps(1)
 		end = point.path(100 * dt, strain=dict(zip(("xx", "yy", "xy"), now)), steps=100)
 		assert engine.values("stress")[0] == pytest.approx(np.tile(end.stress[-1], (3, 1)), rel=1e-9, abs=1)
-		assert engine.values("plasticStrain")[0] == pytest.approx(np.tile(end.plastic_strain[-1], (3, 1)), rel=1e-9, abs=1e-14)
-		assert engine.values("accumulatedPlasticStrain")[0] == pytest.approx(end.fields["accumulatedPlasticStrain"][-1], rel=1e-9)
-	assert end.fields["accumulatedPlasticStrain"][-1] > 1e-3
+		plastic, accumulated = end.plastic_strain[-1], end.fields["accumulatedPlasticStrain"][-1]
+		assert engine.values("plasticStrain")[0] == pytest.approx(np.tile(plastic, (3, 1)), rel=1e-9, abs=1e-14)
+		assert engine.values("accumulatedPlasticStrain")[0] == pytest.approx(accumulated, rel=1e-9)
+	assert accumulated > 1e-3
 
 
 def test_a_block_that_yields_is_saved_and_goes_on_bit_by_bit(tmp_path):
@@ -99,16 +104,25 @@ def test_a_block_that_yields_is_saved_and_goes_on_bit_by_bit(tmp_path):
 		assert np.array_equal(first, second)
 
 
-def test_fields_come_by_themselves():
+def test_fields_come_by_themselves(tmp_path):
 	block, engine = stretched(speed=20)
 	steps(300)
 	assert {name: (unit, components) for name, unit, components in engine.fields()} == {
-		"plasticStrain": ("-", 4), "accumulatedPlasticStrain": ("-", 1), "strain": ("-", 3), "plasticDissipation": ("J/m³", 1)
+		"plasticStrain": ("-", 4), "accumulatedPlasticStrain": ("-", 1), "strain": ("-", 3),
+		"plasticDissipation": ("J/m³", 1)
 	}
 	assert (block.plastic_strain == engine.values("plasticStrain")).all() and block.plastic_strain.any()
 	assert block.plastic_strain[..., :3].sum(axis=-1) == pytest.approx(0, abs=1e-15)
 	volume = np.asarray(block.area)[:, None] / 3
 	assert (engine.values("plasticDissipation") * volume).sum() == pytest.approx(O.energy["plasticFlow"], rel=1e-12)
+	vtk.Recorder(block, str(tmp_path / "block"))()
+	reader = vtkXMLUnstructuredGridReader()
+	reader.SetFileName(str(next(tmp_path.rglob("*.vtu"))))
+	reader.Update()
+	cells = reader.GetOutput().GetCellData()
+	for name in ("accumulatedPlasticStrain", "plasticDissipation"):
+		assert block.field(name).shape == (len(block.triangle_ids), 3)
+		assert vtk_to_numpy(cells.GetArray(name)) == pytest.approx(block.field(name).mean(axis=1), rel=1e-6)
 
 
 @pytest.mark.parametrize("name, value", [("yieldStress", 0), ("hardening", -1e9), ("yieldStress", math.nan)])
