@@ -67,6 +67,8 @@ def realisations(options):
 			("   energy taken [kJ/m]", lambda one: f"{np.interp(last, one.times, one.dissipated) / 1e3:.2f}"),
 			("end [ms]", lambda one: f"{1e3 * one.times[-1]:.1f}"),
 			("   largest rotation [rad]", lambda one: f"{max(one.rotation(one.times[-1], upper)[0] for upper in (True, False)):.2f}"),
+			("   largest Mises stress in the bar so far [MPa]", lambda one: f"{one.bar_stress / 1e6:.0f}"),
+			("   largest plastic strain in the bar", lambda one: f"{one.bar_plastic:.4f}"),
 			("error of the energy book", lambda one: f"{one.run.energy_error:.0e}"),
 			("wall time [s]", lambda one: f"{one.run.wall:.0f}"),
 		)
@@ -115,7 +117,7 @@ def shielding(options):
 
 
 def crush(options, **settings):
-	return reinforced.run(pattern=options.pattern, velocity=options.velocity, rotation=options.rotation, step=options.step, progress=True, **settings)
+	return reinforced.run(pattern=options.pattern, velocity=options.velocity, rotation=options.rotation, step=options.step, steel=options.steel, progress=True, **settings)
 
 
 def save(figure, options, name):
@@ -137,6 +139,10 @@ def read_options():
 	)
 	parser.add_argument("--study", choices=("none", "mesh", "bar"), default="none", help="none: the report's case; mesh: refinement with and without the crack-band "
 		"correction; bar: what the steel shields")
+	parser.add_argument(
+		"--steel", choices=("elastic", "yielding"), default="elastic",
+		help="the bar: elastic, as in the report, or yielding at 270 MPa, as 304L does"
+	)
 	parser.add_argument("--seeds", type=int, nargs="+", default=(1, 2, 3), metavar="N", help="realisations of the fracture energies")
 	parser.add_argument("--sizes", type=float, nargs="+", default=(0.02, 0.01, 0.005), metavar="M", help="cells of the mesh study [m]")
 	parser.add_argument("--until", type=float, default=2.5e-3, metavar="S", help="end of the first realisation [s]; the others end at 0.6 ms at the latest")

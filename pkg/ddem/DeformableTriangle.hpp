@@ -43,7 +43,7 @@ public:
 		"Tensors are in global axes, one per sub-element, tension positive.",
 		((Vector3i,nodes,Vector3i(-1,-1,-1),,"Ids of the three node bodies, counter-clockwise in the xy plane."))
 		((Real,thickness,1,Attr::triggerPostLoad,"Thickness [m] of the plane-strain slice."))
-		((Real,fractureEnergy,-1,Attr::triggerPostLoad,"This triangle's own fracture energy :math:`G_f` [J/m³]; negative: that of its :yref:`ConcreteDamageMat`."))
+		((Real,fractureEnergy,-1,Attr::triggerPostLoad,"This triangle's own fracture energy :math:`G_f`, in the unit of its material's (J/m³ for :yref:`ConcreteDamageMat`, J/m² for :yref:`ScalarDamageMat`); negative: the material's."))
 		((Real,bandFactor,1,Attr::triggerPostLoad,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
 		((Matrix3r,initialDamage,Matrix3r::Zero(),,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
 		createIndex();,

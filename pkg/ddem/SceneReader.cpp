@@ -50,7 +50,7 @@ namespace {
 		const DeformableTriangle& shape = triangleOf(b);
 		const Real                own   = shape.fractureEnergy;
 		if (!std::isfinite(own) || own == 0)
-			reject(b, "fractureEnergy = " + std::to_string(own) + " J/m³ must be positive (or negative for the material's)");
+			reject(b, "fractureEnergy = " + std::to_string(own) + " must be positive, in the unit of its material's (J/m³ for concrete), or negative for the material's");
 		if (!(std::isfinite(shape.bandFactor) && shape.bandFactor > 0))
 			reject(b, "bandFactor = " + std::to_string(shape.bandFactor) + " must be positive (1: no crack band)");
 		return { area, own, shape.bandFactor, initialDamage(b) };

@@ -6,7 +6,7 @@ import threading
 
 import numpy as np
 
-from yade import Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
+from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
 from . import crackband, provenance
 from .arrays import BodyIds, fixed
@@ -514,7 +514,7 @@ def _fracture_energies(mesh, by_region, seed, spread, floor):
 	if seed is None:
 		return energies.tolist()
 	for index, material in enumerate(by_region):
-		if isinstance(material, ConcreteDamageMat):
+		if hasattr(material, "fractureEnergy"):
 			where = mesh.regions == index
 			energies[where] = material.fractureEnergy * factors[where]
 	return energies.tolist()

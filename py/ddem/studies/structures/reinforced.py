@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
+from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, VonMisesMat, ddem
 
 from .. import uniaxial
 from ..runs import Run
@@ -33,6 +33,8 @@ class Crushed:
 	mesh: object
 	recorders: list
 	velocity: float  # of the top, downwards [m/s]
+	bar_stress: float = 0.0  # largest Mises stress in the bar at any record [Pa]
+	bar_plastic: float = 0.0  # largest equivalent plastic strain in the bar at the end [-]
 
 	@property
 	def times(self):
@@ -110,15 +112,25 @@ class Crushed:
 		return float(self.times[np.abs(self.stress) > part * self.wave].max(initial=0))
 
 
+def mises(stress):
+	"""Mises' equivalent stress of tensors (…, 4): xx, yy, zz, xy."""
+	xx, yy, zz, xy = np.moveaxis(np.asarray(stress), -1, 0)
+	return np.sqrt(0.5 * ((xx - yy)**2 + (yy - zz)**2 + (zz - xx)**2) + 3 * xy**2)
+
+
 class _Test(uniaxial.CompressionTest):
 	"""The same, with a snapshot at the first record after each of some instants [s]."""
 
 	def __init__(self, instants, *arguments, **settings):
 		super().__init__(*arguments, **settings)
 		self._instants = sorted(instants, reverse=True)
+		self._bar = self.specimen.sample.mesh.regions == 1
+		self.bar_stress = 0.0  #: largest Mises stress in the bar at any record [Pa]
 
 	def record(self):
 		super().record()
+		if self._bar.any():
+			self.bar_stress = max(self.bar_stress, mises(self.specimen.sample.stress[self._bar]).max())
 		if self._instants and O.time >= self._instants[-1]:
 			self._instants.pop()
 			self._look(files=False)
@@ -126,13 +138,14 @@ class _Test(uniaxial.CompressionTest):
 
 def run(
 	size=SIZE, seed=1, bar=True, pattern="crossed", velocity=VELOCITY, until=6e-4, crack_band=None, rotation="cosserat", step=0.8, concrete=None, recorders=(),
-	progress=False, dt=None
+	progress=False, dt=None, steel="elastic"
 ):
 	"""Crush the block and return what happened, as :class:`Crushed`.
 
 	:param size: of the cells [m]
 	:param seed: draws the fracture energies; None: all have the mean
 	:param bar: False leaves the bar out: its triangles are concrete then, all others keep their fracture energies
+	:param steel: "elastic", as in the report, or "yielding": at 270 MPa, as 304L does (:yref:`VonMisesMat`)
 	:param pattern: of the mesh, see :func:`yade.ddem.mesh.rectangle`
 	:param velocity: of the top, downwards [m/s]
 	:param until: end [s]
@@ -144,7 +157,8 @@ def run(
 	:param recorders: functions of the block that make a recorder, such as ``lambda block: vtk.Recorder(block, "out/block")``
 	"""
 	O.materials.append(ConcreteDamageMat(label="concrete", **(concrete or {})))  # Tables 1 and 2
-	O.materials.append(DeformableElastMat(label="steel", **STEEL))
+	kind = {"elastic": DeformableElastMat, "yielding": VonMisesMat}[steel]
+	O.materials.append(kind(label="steel", **STEEL))
 	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, size, pattern=pattern, regions={"bar": BAR}, **({"seed": 1} if pattern == "unstructured" else {}))
 	block = ddem.append(mesh, {"": "concrete", "bar": "steel" if bar else "concrete"}, seed=seed, crack_band=crack_band)
 	platens = ddem.platens(block, velocity)
@@ -157,7 +171,10 @@ def run(
 	made = [make(block) for make in recorders]
 	rows = max(uniaxial.SNAPSHOTS, round(until / RECORDS))
 	test = _Test((*INSTANTS, FINAL), platens, until, stop=0, recorders=made, critical_dt=critical, rows=rows)
-	return Crushed(test.run(progress=progress), block.mesh, made, velocity)
+	run = test.run(progress=progress)
+	plastic = np.asarray(block.plastic_strain)[block.mesh.regions == 1] if bar else np.zeros((1, 4))
+	equivalent = np.sqrt(2 / 3 * ((plastic**2).sum(axis=-1) + plastic[..., 3]**2))
+	return Crushed(run, block.mesh, made, velocity, float(test.bar_stress), float(equivalent.max()))
 
 
 class Fields:
