@@ -220,6 +220,40 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 	return result;
 }
 
+boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
+{
+	const auto current = Omega::instance().getScene();
+	for (const auto& engine : current->engines)
+		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
+	Real tension = 0, bending = 0, shear = 0, torsion = 0;
+	for (const auto& I : *current->interactions) {
+		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
+		if (!phys || !phys->bonded || !I->geom) continue;
+		const State&          state1 = *(*current->bodies)[I->getId1()]->state;
+		const State&          state2 = *(*current->bodies)[I->getId2()]->state;
+		const Vector3r        branch = state2.pos - state1.pos; // bonds know no periodic boundaries
+		const ddem::Bond      bond   = phys->bond(static_cast<const ScGeom&>(*I->geom));
+		const ddem::BondLoads loads  = ddem::bondLoads(
+                        bondConvention(),
+                        bond,
+                        ddem::spaceVector(branch),
+                        ddem::rotation(state1.ori),
+                        ddem::rotation(state2.ori));
+		const ddem::BondSection section(phys->bondRadius);
+		const auto &            force = loads.section.force, &moment = loads.section.moment;
+		tension = math::max(tension, math::abs(force.x) / section.area);
+		shear   = math::max(shear, std::hypot(force.y, force.z) / section.area);
+		bending = math::max(bending, std::hypot(moment.y, moment.z) / section.bendingModulus);
+		torsion = math::max(torsion, math::abs(moment.x) / section.torsionModulus);
+	}
+	boost::python::dict result;
+	result["tension"] = tension;
+	result["bending"] = bending;
+	result["shear"]   = shear;
+	result["torsion"] = torsion;
+	return result;
+}
+
 Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 {
 	const Scene&                                     scene = *Omega::instance().getScene();

@@ -29,6 +29,10 @@ public:
 	/// Broken bonds between bodies of a list.
 	long brokenAmong(const std::vector<int>& ids) const;
 	boost::python::dict bonds() const;
+	/// Largest stresses of the bonds that hold, by what makes them [Pa].
+	boost::python::dict largestStresses() const;
+	/// Bytes of YADE's objects for a bond.
+	static long bytesPerBond() { return long(sizeof(Interaction) + sizeof(ScGeom) + sizeof(BondedPhys)); }
 	/// Bound on the time step [s], see ddem::stableStep.
 	static Real criticalTimeStep();
 
@@ -57,6 +61,14 @@ public:
 		.def("brokenCount",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount,"Number of broken bonds.")
 		.def("brokenAmong",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong,(boost::python::arg("ids")),"Number of broken bonds between bodies of a list of ids.")
 		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), *normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
+		.def("largestStresses",&Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses,
+			"Largest stress that each part of its load makes in any bond that holds, at the present "
+			"positions, as a dictionary [Pa]: *tension* :math:`|F_n|/A` (either sign), "
+			"*bending* :math:`|M_b|R/I`, *shear* :math:`|F_s|/A`, *torsion* :math:`|M_t|R/J`. All zero without bonds.")
+		.def("bytesPerBond",&Law2_ScGeom_BondedPhys_MohrCoulomb::bytesPerBond,
+			"Bytes that YADE's objects for a bond take: its Interaction, geometry and physics, without the "
+			"arrays of a :yref:`BondedInteractionLoop`.")
+		.staticmethod("bytesPerBond")
 		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for its elastic walls: :math:`2/\\omega` of the worst pair, each "
 			"particle's mass shared out between its springs; about a tenth below the exact value. That holds for small overlaps and the consistent convention; the stiffness of the other one is not symmetric. Infinite without springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
 		.staticmethod("criticalTimeStep")

@@ -1,6 +1,8 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/DeformableElastMat.hpp>
 
+#include <pkg/ddem/kernel/triangles/LawGroup.hpp>
+
 #include <sstream>
 #include <typeinfo>
 
@@ -57,6 +59,27 @@ LawOfMaterial DeformableElastMat::ownLaw() const
 	throw std::logic_error(
 	        getClassName() + " does not say which law it has and would run as " + own.name
 	        + ": its class needs DDEM_LAW_OF_MATERIAL, see pkg/ddem/LawMaterial.hpp");
+}
+
+boost::python::dict DeformableElastMat::pyEffects(bool book) const
+{
+	const std::unique_ptr<ddem::LawGroup> group = ownLaw().makeGroup();
+	if (book) group->keepBook(true, [](std::size_t) { return std::array<ddem::PlaneTensor, 3> {}; });
+	boost::python::list on, off, fields;
+	std::size_t         numbers = 0; // of a sub-element
+	for (const ddem::LawEffect& effect : group->effectsOfLaw())
+		(group->effects() & effect.bit ? on : off).append(std::string(effect.name));
+	for (const ddem::StateField& field : group->fields()) {
+		fields.append(boost::python::make_tuple(field.name, field.unit, field.components()));
+		numbers += field.components();
+	}
+	boost::python::dict result;
+	result["law"]        = std::string(group->name());
+	result["effects"]    = on;
+	result["effectsOff"] = off;
+	result["fields"]     = fields;
+	result["bytes"]      = 3 * numbers * sizeof(double);
+	return result;
 }
 
 void DeformableElastMat::pyHandleCustomCtorArgs(boost::python::tuple& /*args*/, boost::python::dict& kw)

@@ -41,6 +41,8 @@ public:
 	virtual LawOfMaterial law() const;
 	/// \throws std::logic_error for a class that does not say its law.
 	LawOfMaterial ownLaw() const;
+	/// What ownLaw() would run, for Python; needs no engine. \param book whether the energy book is open
+	boost::python::dict pyEffects(bool book) const;
 	/// Mask of the law's effects that are switched on.
 	virtual unsigned switchedOn() const { return 0; }
 
@@ -57,6 +59,11 @@ public:
 		createIndex(); young = 79.4e9; poisson = 0.2; density = 2400;,
 		.add_property("bulk",&DeformableElastMat::bulk,&DeformableElastMat::setBulk,"Bulk modulus [Pa], computed from :yref:`young<ElastMat.young>` and :yref:`poisson<ElastMat.poisson>`; setting it keeps the shear modulus.")
 		.add_property("shear",&DeformableElastMat::shear,&DeformableElastMat::setShear,"Shear modulus [Pa], computed from :yref:`young<ElastMat.young>` and :yref:`poisson<ElastMat.poisson>`; setting it keeps the bulk modulus.")
+		.def("effects",&DeformableElastMat::pyEffects,(boost::python::arg("book")=false),
+			"What the law does with these parameters and switches, as a dict with law, effects (names of "
+			"those that run), effectsOff, fields (name, unit, components) and bytes (of state per "
+			"triangle, without what triangles have of their own), as "
+			":yref:`DeformableEngine.groups` has them; *book*: with the fields of the energy book.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(DeformableElastMat, FrictMat);

@@ -33,7 +33,10 @@ from ._lazy import lazy
 
 # Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
 _LAZY = {
-	"append": "block", "Block": "block", "time_step": "block", "platens": "loading", "Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation", "EnergyBalance": "energy",
+	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
+	"Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation",
+	"EnergyBalance": "energy",
+	"effects": "effect_table",
 	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,
 	"studies": None, "reports": None, "verification": None,
 }

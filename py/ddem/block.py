@@ -26,7 +26,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 		energy of a crack per area the same (see :mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
 	:returns: :class:`Block`
 	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another kind, thickness, seed, spread, floor, position or
-		crack_band out of range. Nothing is appended then.
+		crack_band out of range, or a crack_band where no material has a fracture energy. Nothing is appended
+		then.
 	"""
 	mesh.validate()
 	mesh = mesh.reordered()
@@ -36,6 +37,12 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	energies = _fracture_energies(mesh, by_region, seed, spread, floor)
 	provenance.note_seed(seed)
 	bands = np.ones(len(mesh.triangles)) if crack_band is None else crackband.factors(mesh.areas, crack_band)
+	if crack_band is not None and not any(hasattr(material, "fractureEnergy") for material in by_region):
+		kinds = ", ".join(sorted({type(material).__name__ for material in by_region if material}))
+		raise ValueError(
+			f"crack_band = {crack_band} m scales a fracture energy, and {kinds} has none: leave crack_band "
+			"out, or give a region a material that breaks, such as ConcreteDamageMat"
+		)
 	offset = np.asarray(position, float)
 	if offset.shape != (3, ) or not np.isfinite(offset).all():
 		raise ValueError(f"position = {position} must be three finite numbers [m]")

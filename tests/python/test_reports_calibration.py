@@ -12,6 +12,14 @@ from ddem.studies.calibration_quantities import parameters
 from ddem.studies.evaluations import Bench, EvaluationError
 
 
+#: a line of ddem.effects()
+EFFECT = {
+	"group": "bonded spheres", "particle": "bond", "count": 1234, "group_bytes": 500,
+	"cost": "150 ns per bond and step", "effect": "bending", "state": "idle",
+	"why": "part of every bond <EI>", "bytes": 8, "measured": "a share of 1e-6"
+}
+
+
 def bonded(values, case):
 	"""Elasticities 1 and 0, 0.1 and 0.9; the second seed is 2 % stronger, and bonds above 300 MPa do not break."""
 	if values["cohesion"] > 300e6:
@@ -19,13 +27,14 @@ def bonded(values, case):
 	return {"young": 1.3 * values["young"], "ucs": 58e6 * (values["young"] / 30e9)**0.1 * (values["cohesion"] / 42e6)**0.9 * (1 + 0.02 * (case["seed"] - 1))}
 
 
-def calibrated(ucs=60e6, seeds=(1, ), folder=None, bounds=None):
+def calibrated(ucs=60e6, seeds=(1, ), folder=None, bounds=None, evaluate=bonded):
 	lines = []
 	tuned = parameters("rigid", ["young", "cohesion"], {"young": 40e9, "cohesion": 100e6}, bounds)
 	targets = [Target("young", 40e9, 0.01), Target("ucs", ucs, 0.02)]
 	progress = Progress("rigid", tuned, targets, lines.append)
 	progress.header()
-	with Bench(bonded, [{"seed": seed} for seed in seeds], {"specimen": "prism"}, folder and folder / "evaluations.jsonl") as bench:
+	path = folder and folder / "evaluations.jsonl"
+	with Bench(evaluate, [{"seed": seed} for seed in seeds], {"specimen": "prism"}, path) as bench:
 		outcome = Calibration(tuned, targets, bench, tell=progress).run()
 	report = CalibrationReport(
 		outcome, bench, "rigid", folder or "", "A title", "O.materials.append(…)", [("specimen", "prism <small>", "a prism")], "run it --so", {"young": [40e9]},
@@ -92,6 +101,24 @@ def test_files(tmp_path):
 		assert round(width / 300 * 25.4) == 85  # a column at 300 dpi
 	# self-contained: nothing is loaded from elsewhere
 	assert not re.search(r"""(src|href)\s*=\s*["'](?!data:)|url\(|@import|<script|<link""", page)
+
+
+def test_effects_of_the_point_found_are_on_the_page(tmp_path):
+
+	def evaluate(values, case):
+		return {**bonded(values, case), "effects": [{**EFFECT, "values": values}]}
+
+	report, _ = calibrated(folder=tmp_path, evaluate=evaluate)
+	page = open(report.write(), encoding="utf-8").read()
+	with open(tmp_path / "calibration.json") as file:
+		assert json.load(file)["effects"] == [{**EFFECT, "values": report.outcome.best.values}]
+	for text in (
+		"bonded spheres:\n1\u202f234 bonds", "500 bytes of state each; cost 150 ns", "&lt;EI&gt; (8 bytes)",
+		"1e-6: changed nothing"
+	):
+		assert text in page
+	again, _ = calibrated(folder=tmp_path, evaluate=bonded)  # from the file
+	assert again.bench.ran == 0 and again.effects == report.effects
 
 
 def test_nothing_measured_is_a_report_too(tmp_path):

@@ -143,6 +143,22 @@ def test_page_and_files(group, tmp_path):
 	assert len(lines) == 2 + len(groups) and len({len(line) for line in lines}) == 1
 
 
+def test_effects_of_the_first_run_are_on_the_page(group, tmp_path):
+	one = group([200.0, 210.0])
+	row = {
+		"group": "bonded spheres", "particle": "bond", "count": 200, "group_bytes": 0, "cost": "",
+		"effect": "torsion", "state": "idle", "why": "part of every bond", "bytes": 0,
+		"measured": "a share of 1e-6"
+	}
+	one.records[0].summary["effects"] = [row]
+	path = report.write([one], str(tmp_path / "out"), "run it", {}, {}, [], pictures=False)
+	page = open(path, encoding="utf-8").read()
+	assert f"Of the first run, {one.label}." in page
+	assert "part of every bond. <i>a share of 1e-6: changed nothing</i>" in page
+	with open(tmp_path / "out" / "study.json", encoding="utf-8") as file:
+		assert json.load(file)["effects"] == [row]
+
+
 def test_page_of_a_few_runs_without_pictures(group, tmp_path):
 	page = open(report.write([group([200.0])], str(tmp_path / "out"), "run it", {}, {}, [], pictures=False), encoding="utf-8").read()
 	assert "data:image" not in page and "Figure 1" not in page and "What else decides" not in page

@@ -83,6 +83,16 @@ def test_a_line_says_everything(tmp_path):
 	assert (bad["parameters"], bad["measured"], bad["error"]) == ({"x": 2.0}, None, "nothing works at 2.0")
 
 
+def test_what_a_scene_simulated_is_kept_beside_what_was_measured(tmp_path):
+	told = {"a": [], "b": [{"effect": "flow"}]}
+	cases = [{"test": name} for name in told]
+	with Bench(lambda values, case: {"y": 1, "effects": told[case["test"]]}, cases, path=tmp_path / "e") as bench:
+		(point, ) = bench.measure(points(1))
+		assert point.measured == {"y": 1.0} and bench.effects(point.values) == told["b"]
+		assert bench.effects({"x": 2.0}) == []  # not evaluated
+	assert [record["effects"] for record in lines(tmp_path / "e")] in ([[], told["b"]], [told["b"], []])
+
+
 @pytest.mark.parametrize(
 	"damage", [b"not json\n", b"[1, 2]\n", b"{}\n", b'{"format": 0}\n', b"\xff\xfe\n", b'{"format": 1, "error": null, "measured": {"y": NaN}, "key": "k"}\n']
 )

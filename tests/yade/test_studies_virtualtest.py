@@ -113,7 +113,10 @@ def test_known_bonds_are_found_again_in_other_processes(tmp_path):
 def test_a_yade_of_its_own_gives_the_same():
 	evaluate = SeparateYade(PRISM, {"poisson": 0.25})
 	tuned = {"young": 50e9, "cohesion": 60e6}
-	assert evaluate(tuned, COMPRESSION) == perform(PRISM, BONDS, COMPRESSION)
+	measured = evaluate(tuned, COMPRESSION)
+	told = measured.pop("effects")
+	assert measured == perform(PRISM, BONDS, COMPRESSION)
+	assert {row["group"] for row in told} == {"bonded spheres"} and "bending" in {row["effect"] for row in told}
 
 
 def test_bad_parameter_comes_back_in_words(tmp_path):

@@ -117,6 +117,8 @@ def test_page_holds_everything(tmp_path):
 		assert expected in text, expected
 	assert "σ<sub>yy</sub>" in text
 	assert text.count("data:image/png;base64,") == 2
+	assert text.count("Effects of its last scene") == 1  # only settling has one
+	assert "rotation = &#39;" in text
 	assert sorted(os.listdir(tmp_path / "new")) == ["errors.png", "settling.png", "verification.html"]
 	# self-contained: nothing is loaded from elsewhere
 	assert not re.search(r"""(src|href)\s*=\s*["'](?!data:|#)|url\(|@import|<script|<link""", text)

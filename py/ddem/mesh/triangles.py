@@ -116,9 +116,9 @@ class Mesh:
 	def boundary(self, where=None):
 		"""Sorted indices of nodes on the border.
 
-		:param where: a side ("top", "bottom", "left", "right"; it may be uneven or slant by 0.3 of an edge, see
-			:func:`sides.side`), or a function of the arrays x, y [m] of border nodes that says which of
-				them to take; all when left out
+		:param where: a side ("top", "bottom", "left", "right"; it may be uneven or slant by 0.3 of an edge), or
+			a function of the arrays x, y [m] of border nodes that says which of them to take; all when left
+			out
 		:raises ValueError: unknown side, no such side because the border is round, slanted or rough there, a
 			function that gives something else or finds no node
 		"""

@@ -39,9 +39,15 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 	page = pages.render(
 		"bonded_study.html", {"tied": _tied}, title=TITLE, written=written, runs=sum(len(g.records) for g in groups), machine=pages.processor(), lead=lead(paper),
 		claims=said, packings=len(paper[0].records), columns=columns, rows=_rows(groups), breaks=_breaks(groups), settings=settings, command=command,
-		versions=versions, pictures=pages.save(drawn, folder, pdf), **texts
+		versions=versions, pictures=pages.save(drawn, folder, pdf), effects=effects(groups),
+		first_run=groups[0].label, **texts
 	)
 	return pages.write(page, os.path.join(folder, "bonded_figures.html"))
+
+
+def effects(groups):
+	"""What the first run simulated, a list of dicts; empty for runs of versions that did not say so."""
+	return groups[0].records[0].summary.get("effects", [])
 
 
 def table(groups):
@@ -187,6 +193,7 @@ def _plain(groups, said, texts, written, command, options, versions):
 			"runs": [_run(record) for record in group.records],
 		} for group in groups],
 		"claims": [vars(claim) for claim in said],
+		"effects": effects(groups),
 		**texts,
 	}
 

@@ -85,6 +85,11 @@ class CalibrationReport:
 		self.tuned = [TUNABLES[model][p.name] for p in outcome.parameters]
 		self.measures = [MEASURES[t.name] for t in outcome.targets]
 
+	@property
+	def effects(self):
+		"""What the scene of the best point simulated, see :meth:`effect_table.EffectTable.rows`."""
+		return self.bench.effects(self.outcome.best.values) if self.outcome.best else []
+
 	def verdict(self):
 		"""One sentence: whether the targets are met."""
 		if self.outcome.reached:
@@ -180,6 +185,7 @@ class CalibrationReport:
 				"cases_a_point": self.bench.cases, "seconds_added_up": self.bench.seconds, "wall_s": outcome.seconds
 			},
 			"settings": self.bench.settings,
+			"effects": self.effects,
 			"steps": [{
 				"number": s.number, "purpose": s.purpose, "parameter": s.parameter, "values": s.point.values, "measured": s.point.measured,
 				"scatter": s.point.scatter, "error": s.point.error

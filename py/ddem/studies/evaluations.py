@@ -21,6 +21,7 @@ from dataclasses import dataclass
 
 from .. import provenance
 
+EFFECTS = "effects"  #: key, beside the measures, of what the scene simulated (:meth:`effect_table.EffectTable.rows`)
 FORMAT = 1  #: of the lines; evaluations in another format are made again
 
 
@@ -98,7 +99,8 @@ class Store:
 class Bench:
 	"""Measures points in all cases, *jobs* evaluations at a time, and keeps every one.
 
-	:param evaluate: ``evaluate(values, case)`` returns a dict of finite measures, or raises; called in threads, so it should start a process for heavy work.
+	:param evaluate: ``evaluate(values, case)`` returns a dict of finite measures, and under :data:`EFFECTS`
+		what the scene simulated, or raises; called in threads, so it should start a process for heavy work.
 		Its ``stop()``, where it has one, is called when the run is interrupted, and must end what is running.
 	:param cases: list of dicts that can be written as JSON, as {"test": "compression", "seed": 1}
 	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are not reused
@@ -145,6 +147,11 @@ class Bench:
 		known.update(self._run(missing))
 		return [self._point(values, known) for values in points]
 
+	def effects(self, values):
+		"""What the scene of a point simulated, in the first case that says so; empty where none does."""
+		records = (self.store.get(fingerprint(self.settings, values, case)) or {} for case in self.cases)
+		return next((record[EFFECTS] for record in records if record.get(EFFECTS)), [])
+
 	def _run(self, jobs):
 		records, running = {}, {}
 		pool = concurrent.futures.ThreadPoolExecutor(max_workers=self.jobs)
@@ -172,11 +179,14 @@ class Bench:
 		record = {"format": FORMAT, "key": key, "case": case, "parameters": values, "settings": self.settings, "measured": None, "error": None}
 		start = time.perf_counter()
 		try:
-			measured = {name: float(value) for name, value in self.evaluate(dict(values), dict(case)).items()}
+			answer = self.evaluate(dict(values), dict(case))
+			measured = {name: float(value) for name, value in answer.items() if name != EFFECTS}
 			wrong = [f"{name} = {value}" for name, value in measured.items() if not math.isfinite(value)]
 			if wrong:
 				raise ValueError(f"measured {', '.join(wrong)}")
 			record["measured"] = measured
+			if EFFECTS in answer:
+				record[EFFECTS] = answer[EFFECTS]
 		except Exception as error:
 			record["error"] = f"{type(error).__name__}: {error}" if not isinstance(error, EvaluationError) else str(error)
 		record["seconds"] = round(time.perf_counter() - start, 3)

@@ -45,6 +45,7 @@ class Run:
 	parameters: list = field(default_factory=list)  # (name, value with unit, meaning)
 	extra: dict = field(default_factory=dict)  # further figures for the summary
 	test: str = "compression"  # or "tension", where stress, strain and forces are positive in tension
+	effects: list = field(default_factory=list)  # of the scene at the end, see effect_table.EffectTable.rows
 	broken: np.ndarray = None  # records of the broken bonds (broken_bonds.DTYPE), None where there are no bonds
 
 	@property
@@ -101,6 +102,7 @@ class Run:
 			"stress_at_end_MPa": self.series.last("stress") / 1e6,
 			"energy_error": self.energy_error,
 			"stopped": self.stopped,
+			"effects": self.effects,
 			**self.extra,
 		}
 		return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in figures.items()}

@@ -9,6 +9,7 @@ from yade import ConcreteDamageMat, O, PyRunner, timing
 
 from .. import loading
 from ..block import Block
+from ..effect_table import effects
 from ..energy import EnergyBalance
 from ..series import Series
 from .runs import RECORDER, Run
@@ -175,7 +176,8 @@ class CompressionTest:
 			model=specimen.model, title=specimen.title, particle=specimen.particle, particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
 			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
-			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(), test=self.kind, broken=specimen.broken
+			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(),
+			test=self.kind, broken=specimen.broken, effects=effects().rows()
 		)
 
 

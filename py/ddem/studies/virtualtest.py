@@ -19,7 +19,7 @@ import tempfile
 
 from .. import packing
 from . import processes
-from .evaluations import EvaluationError
+from .evaluations import EFFECTS, EvaluationError
 
 ROWS = 4000  #: records up to the largest strain, so that a peak at a twentieth of it is met within 0.5 %
 ENERGY_ERROR = 0.05  #: an evaluation whose energy book is off by more is no measurement
@@ -270,7 +270,9 @@ def answer(request, path):
 	setup["radii"] = setup["radii"] and tuple(setup["radii"])
 	found = {"measured": None, "error": None}
 	try:
-		found["measured"] = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
+		measured = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
+		from ..effect_table import effects
+		found["measured"] = {**measured, EFFECTS: effects().rows()}
 	except EvaluationError as error:
 		found["error"] = str(error)
 	except Exception as error:

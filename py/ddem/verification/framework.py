@@ -12,6 +12,8 @@ import traceback
 
 from yade import O
 
+from ..effect_table import effects
+
 #: groups of cases, in the order of the report
 GROUPS = ("the element", "statics", "waves and vibration", "rotation", "dynamic relaxation", "concrete at a point", "concrete structures")
 SLOW = 4.0  #: cases that take longer are slow [s]
@@ -104,6 +106,8 @@ class Result:
 	notes: list  # sentences
 	wall: float  # [s], pictures left out
 	error: str = ""  # traceback of a case that raised
+	# of the scene in which it ended, see effect_table.EffectTable.rows
+	effects: list = dataclasses.field(default_factory=list)
 
 	@property
 	def passed(self):
@@ -219,9 +223,10 @@ def run(which, pictures=False, **settings):
 	check = Check(which.name, pictures)
 	try:
 		which.function(check, **settings)
+		result = check.result(which)
+		return dataclasses.replace(result, effects=effects().rows()) if pictures else result
 	except Exception as error:  # the other cases still run
 		check.fail(error)
 		return check.result(which, traceback.format_exc())
 	finally:
 		O.reset()
-	return check.result(which)

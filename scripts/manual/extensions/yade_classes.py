@@ -208,6 +208,7 @@ def default_text(documented, name, member):
 	written = documentation(member)[1]
 	if written is None:
 		return ""
+	written = re.sub(r"\s*/\s*", "/", written)  # 2. / 3
 	if NUMBER.fullmatch(written):
 		return re.sub(r"(?<=\d)\.(?!\d)", "", re.sub(r"(?<!\d)\.(?=\d)", "0.", written))
 	try:

@@ -124,13 +124,13 @@ class _Test(uniaxial.CompressionTest):
 	def __init__(self, instants, *arguments, **settings):
 		super().__init__(*arguments, **settings)
 		self._instants = sorted(instants, reverse=True)
-		self._bar = self.specimen.sample.mesh.regions == 1
+		self._steel = self.specimen.sample.mesh.regions == 1
 		self.bar_stress = 0.0  #: largest Mises stress in the bar at any record [Pa]
 
 	def record(self):
 		super().record()
-		if self._bar.any():
-			self.bar_stress = max(self.bar_stress, mises(self.specimen.sample.stress[self._bar]).max())
+		if self._steel.any():
+			self.bar_stress = max(self.bar_stress, mises(self.specimen.sample.stress[self._steel]).max())
 		if self._instants and O.time >= self._instants[-1]:
 			self._instants.pop()
 			self._look(files=False)
