@@ -64,7 +64,8 @@ public:
 		.def("largestStresses",&Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses,
 			"Largest stress that each part of its load makes in any bond that holds, at the present "
 			"positions, as a dictionary [Pa]: *tension* :math:`|F_n|/A` (either sign), "
-			"*bending* :math:`|M_b|R/I`, *shear* :math:`|F_s|/A`, *torsion* :math:`|M_t|R/J`. All zero without bonds.")
+			"*bending* :math:`|M_b|R/I`, *shear* :math:`|F_s|/A`, "
+			"*torsion* :math:`|M_t|R/J`. All zero without bonds.")
 		.def("bytesPerBond",&Law2_ScGeom_BondedPhys_MohrCoulomb::bytesPerBond,
 			"Bytes that YADE's objects for a bond take: its Interaction, geometry and physics, without the "
 			"arrays of a :yref:`BondedInteractionLoop`.")
