@@ -1,7 +1,7 @@
 # GPL v2 or later, see LICENSE.
 # needs: valgrind
-# An effect that is off costs no instruction, and neither does what another group of triangles simulates: counted by callgrind, so nothing depends
-# on the machine's speed.
+# An effect that is off costs no instruction, and neither does what another group of triangles simulates: counted by
+# callgrind, so nothing depends on the machine's speed.
 import json
 import os
 import pathlib
@@ -21,19 +21,21 @@ MASKS = [mask for mask in range(32) if mask & 2 or not mask & 4]
 
 @pytest.fixture(scope='module')
 def build_program(tmp_path_factory):
-	"""Builds a program of the folder instructions with the flags of the kernel's widest loops, against the kernel; gives its path."""
+	"""Builds a program of the folder instructions as the kernel's widest loops are built; gives its path."""
 	build = os.environ['DDEM_BUILD_DIR']
 	commands = json.load(open(os.path.join(build, 'compile_commands.json')))
 	entry = next(entry for entry in commands if entry['file'].endswith('/ConcreteDamageCorotationalAvx2.cpp'))
-	compiler = [a for a in shlex.split(entry['command']) if not a.endswith('ccache')]
-	compiler = [a for a, before in zip(compiler, [''] + compiler) if a not in ('-c', '-o') and before not in ('-c', '-o')]
+	words = [word for word in shlex.split(entry['command']) if not word.endswith('ccache')]
+	in_out = ('-c', '-o')
+	compiler = [word for word, before in zip(words, [''] + words) if word not in in_out and before not in in_out]
 
 	def build_it(source, name, *flags):
-		arguments = compiler if flags else [a for a in compiler if a not in ('-mavx2', '-mfma')]  # wide only where a loop is made in it
+		# wide only where a loop is made in it
+		arguments = compiler if flags else [word for word in compiler if word not in ('-mavx2', '-mfma')]
 		program = tmp_path_factory.getbasetemp() / name
 		link = ['-static', os.path.join(build, 'libddem_kernel.a'), '-fopenmp']
-		subprocess.run(
-			[*arguments, *flags, str(SOURCES / source), *link, '-o', str(program)], cwd=entry['directory'], check=True, capture_output=True, text=True)
+		command = [*arguments, *flags, str(SOURCES / source), *link, '-o', str(program)]
+		subprocess.run(command, cwd=entry['directory'], check=True)
 		return program
 
 	return build_it
@@ -51,10 +53,9 @@ def system(build_program):
 
 def instructions(program, function, *arguments):
 	"""Instructions inside a function, and what the program printed."""
-	result = subprocess.run(
-		['valgrind', '--tool=callgrind', '--callgrind-out-file=/dev/null', '--toggle-collect=' + function, program, *map(str, arguments)],
-		capture_output=True,
-		text=True)
+	options = ['--tool=callgrind', '--callgrind-out-file=/dev/null', '--toggle-collect=' + function]
+	command = ['valgrind', *options, program, *map(str, arguments)]
+	result = subprocess.run(command, capture_output=True, text=True)
 	assert result.returncode == 0, result.stderr
 	count = int(re.search(r'Collected : (\d+)', result.stderr).group(1))
 	assert count > 10000, result.stderr  # the function was found
@@ -65,13 +66,15 @@ def instructions(program, function, *arguments):
 def test_mask_costs_what_it_costs_alone(mask, tile, build_program):
 	loop = '*advanceBatches*ConcreteDamage*'
 	together, result = instructions(tile, loop, mask, 40)
-	alone, result_alone = instructions(build_program('tile.cpp', 'alone%d' % mask, '-DALONE=%d' % mask), loop, mask, 40)
+	program = build_program('tile.cpp', 'alone%d' % mask, '-DALONE=%d' % mask)
+	alone, result_alone = instructions(program, loop, mask, 40)
 	assert float(result) == pytest.approx(float(result_alone), rel=1e-12)  # the same work
 	assert together == pytest.approx(alone, rel=0.005)
 
 
 def test_each_effect_costs_something_when_on(tile):
-	cost = {mask: instructions(tile, '*advanceBatches*ConcreteDamage*', mask, 40)[0] for mask in (0, 2, 6, 8, 14, 16, 30, 31)}
+	loop = '*advanceBatches*ConcreteDamage*'
+	cost = {mask: instructions(tile, loop, mask, 40)[0] for mask in (0, 2, 6, 8, 14, 16, 30, 31)}
 	for less, more in ((0, 2), (2, 6), (0, 8), (6, 14), (0, 16), (14, 30), (30, 31)):
 		assert cost[less] < 0.98 * cost[more], cost
 

@@ -41,7 +41,8 @@ double stepsOfSystem(const char* sample, RotationTreatment rotation, int steps)
 	if (is("rest")) agitate(system, 1e-20, 1e-20, 71);
 	else
 		agitate(system, 1e-3, 1, 71);
-	return run(system, stepOf(0.5 * criticalStep(mesh, Material(), rotation)), steps).kinetic + system.motion.node.force[0];
+	return run(system, stepOf(0.5 * criticalStep(mesh, Material(), rotation)), steps).kinetic
+	        + system.motion.node.force[0];
 }
 
 } // namespace

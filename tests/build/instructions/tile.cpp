@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Steps of a tile of concrete for a count of instructions (test_instructions.py), corotational; all elements are driven:
+// Steps of a tile of concrete for a count of instructions (test_instructions.py), corotational; all elements are
+// driven:
 //
 //     tile MASK STEPS
 //
@@ -60,7 +61,7 @@ double stepsOfMask(unsigned mask, int steps)
 	std::vector<std::int32_t> vertex[3];
 	std::vector<double>       arm[4], node, reference, core, corner(6 * count), force(2 * count), moment(count);
 	for (std::size_t i = 0; i < count; i++) {
-		const double                    skew = 1e-3 * std::sin(double(i)); // arms of triangles that differ, sum zero
+		const double skew = 1e-3 * std::sin(double(i)); // arms of triangles that differ, sum zero
 		const TriangleReference<double> shape({ -3e-3 + skew, -1e-3 }, { 3e-3, -1e-3 - skew });
 		for (std::size_t e = 0; e < 3; e++) {
 			vertex[e].push_back(std::int32_t(node.size() / 2));
@@ -94,7 +95,8 @@ double stepsOfMask(unsigned mask, int steps)
 	const double band[widestBatch]   = { 1, 1, 1, 1, 1, 1, 1, 1 };
 	HeldSteps    held;
 	held.rest = 4 * std::numeric_limits<double>::epsilon();
-	const TileState<ConcreteDamage> tile { &law, columns.tile(0), columns.stride(0), { energy, band }, { 0, 0 }, held };
+	const TileState<ConcreteDamage> tile { &law, columns.tile(0), columns.stride(0), { energy, band }, { 0, 0 },
+		                               held };
 	StepEnergy                      sum;
 	const auto                      loop = loopOf(mask);
 	for (int s = 1; s <= steps; s++) {

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Cost of a triangle-step of every law with every mask of its effects, one thread: driven, at rest, and driven in the instructions that every
-// processor has. Names: LAW/effects/state; the counter ns is per triangle and step.
+// Cost of a triangle-step of every law with every mask of its effects, one thread: driven, at rest, and driven in the
+// instructions that every processor has. Names: LAW/effects/state; the counter ns is per triangle and step.
 #include "../TriangleSamples.hpp"
 
 #include <laws/AllLaws.hpp>
@@ -26,9 +26,15 @@ public:
 	        : state(state_)
 	        , mesh(rectangle(20, 40, 0.1, 0.2, 0.1)) // 1600 triangles: the law is measured, not the memory
 	        , system(makeSystem(mesh, Material(), RotationTreatment::Cosserat))
-	        , settings(stepOf(0.5 * criticalStep(mesh, Material(), RotationTreatment::Cosserat), mask & LawEffects::Energy))
+	        , settings(stepOf(
+	                  0.5 * criticalStep(mesh, Material(), RotationTreatment::Cosserat), mask & LawEffects::Energy))
 	{
-		setGroups<Law>(system, Material(), typename Law::Parameters(), mask & ~unsigned(LawEffects::Energy), { system.triangles() });
+		setGroups<Law>(
+		        system,
+		        Material(),
+		        typename Law::Parameters(),
+		        mask & ~unsigned(LawEffects::Energy),
+		        { system.triangles() });
 		if (state == State::Rest) agitate(system, 1e-20, 1e-20, 71);
 		else
 			drive(1e-6 / settings.dt);
@@ -80,14 +86,17 @@ template <class Law> std::string nameOf(unsigned mask)
 
 template <class Law> void registerBenchmark(unsigned mask, State kind)
 {
-	const char* const suffix = kind == State::Driven ? "driven" : kind == State::Baseline ? "driven-baseline" : "rest";
+	const char* const suffix = kind == State::Driven ? "driven"
+	        : kind == State::Baseline                ? "driven-baseline"
+	                                                 : "rest";
 	benchmark::RegisterBenchmark((nameOf<Law>(mask) + "/" + suffix).c_str(), [=](benchmark::State& state) {
 		omp_set_num_threads(1);
 		Sample<Law> sample(mask, kind);
 		for (auto _ : state)
 			sample.step();
 		state.counters["ns"] = benchmark::Counter(
-		        1e-9 * double(sample.triangles()), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+		        1e-9 * double(sample.triangles()),
+		        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 	});
 }
 

@@ -2,8 +2,8 @@
 // Steps in which a law is not evaluated: at rest, while flow waits, and below a threshold.
 #include "../TriangleSamples.hpp"
 
-#include <laws/AllLaws.hpp>
 #include <pkg/ddem/kernel/triangles/PointOf.hpp>
+#include <laws/AllLaws.hpp>
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ struct Loose {
 		Random random(31);
 		for (std::size_t i = 0; i < first + count; i++) {
 			const Vertices v { { { 0, 0 }, { 5e-3, 1e-3 }, { 2e-3, 4e-3 } } };
-			const Point    place { i < first ? 0.2 : random.uniform(-0.3, 0.3), i < first ? 0.1 : random.uniform(-0.3, 0.3) };
+			const Point    place { i < first ? 0.2 : random.uniform(-0.3, 0.3),
+                                            i < first ? 0.1 : random.uniform(-0.3, 0.3) };
 			for (const Point& corner : v)
 				sample.mesh.node.push_back(place + corner);
 			const auto n = std::int32_t(3 * i);
@@ -41,7 +42,10 @@ struct Loose {
 		setGroups<Law>(sample.system, Material(), typename Law::Parameters(), mask, { first + count });
 		for (Points* points : { &sample.system.motion.node, &sample.system.motion.core })
 			std::fill(points->inverseMass.begin(), points->inverseMass.end(), 0.);
-		std::fill(sample.system.motion.spin.inverseInertia.begin(), sample.system.motion.spin.inverseInertia.end(), 0.);
+		std::fill(
+		        sample.system.motion.spin.inverseInertia.begin(),
+		        sample.system.motion.spin.inverseInertia.end(),
+		        0.);
 		sample.system.motion.collectConstraints();
 		return sample;
 	}
@@ -61,7 +65,7 @@ struct Loose {
                                 return centre + Point { s.xx * r.x + s.xy * r.y, s.xy * r.x + s.yy * r.y } + r;
 			};
 			for (const std::int32_t v : mesh.triangle[i]) {
-				const Point x = moved(mesh.node[std::size_t(v)]);
+				const Point x                                       = moved(mesh.node[std::size_t(v)]);
 				system.motion.node.position[2 * std::size_t(v)]     = x.x;
 				system.motion.node.position[2 * std::size_t(v) + 1] = x.y;
 			}
@@ -153,7 +157,9 @@ double evaluatedShare(TriangleSystem& system, const StepSettings& settings, int 
 }
 
 class HeldAtRest : public testing::TestWithParam<RotationTreatment> { };
-INSTANTIATE_TEST_SUITE_P(, HeldAtRest, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, HeldAtRest, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
 TEST_P(HeldAtRest, aBlockThatOnlyRoundOffMovesSkipsItsLaw)
 {
@@ -165,8 +171,8 @@ TEST_P(HeldAtRest, aBlockThatOnlyRoundOffMovesSkipsItsLaw)
 		TriangleSystem     system   = makeSystem(mesh, Material(), GetParam());
 		makeConcrete(system, ConcreteParameters(), everything);
 		agitate(system, 1e-20, 1e-20, 71);
-		TriangleSystem without  = system;
-		without.group[0]->rest  = -1;
+		TriangleSystem without = system;
+		without.group[0]->rest = -1;
 		run(system, settings, 50);
 		run(without, settings, 50);
 		EXPECT_LT(evaluatedShare(system, settings, 100), 1e-3);
@@ -185,7 +191,8 @@ TEST(HeldSteps, restEndsAtItsBoundAndLosesNoStrain)
 		for (const Point& r : reference.arm)
 			arms += std::abs(r.x) + std::abs(r.y);
 		const Point c = centroid(sample.mesh.corners(i));
-		return 4 * std::numeric_limits<double>::epsilon() * (std::abs(c.x) + std::abs(c.y) + arms) * arms / reference.twiceSubArea();
+		return 4 * std::numeric_limits<double>::epsilon() * (std::abs(c.x) + std::abs(c.y) + arms) * arms
+		        / reference.twiceSubArea();
 	};
 	const double dt     = 1e-7;
 	Loose        sample = Loose::concrete(23), always = sample;
@@ -201,7 +208,8 @@ TEST(HeldSteps, restEndsAtItsBoundAndLosesNoStrain)
 	const double bound = boundOf(sample, 0);
 	EXPECT_LT(bound, 1e-11);
 	EXPECT_GT(bound, 1e-14);
-	const std::vector<double> before = sample.values("strain", 0, 0), plastic = sample.values("plasticStrain", 0, 0);
+	const std::vector<double> before  = sample.values("strain", 0, 0),
+	                          plastic = sample.values("plasticStrain", 0, 0);
 	sample.step(at(0), dt); // where it is
 	sample.step(at(0.2 * bound), dt);
 	EXPECT_EQ(sample.values("strain", 0, 0), before);
@@ -215,12 +223,13 @@ TEST(HeldSteps, restEndsAtItsBoundAndLosesNoStrain)
 	EXPECT_NEAR(reached, wanted, 1.5 * bound);
 	EXPECT_GT(std::abs(wanted - last(before)), 10 * bound);
 	for (std::size_t c = 0; c < 4; c++)
-		EXPECT_NEAR(sample.values("plasticStrain", 0, 0)[c], always.values("plasticStrain", 0, 0)[c], 100 * bound);
+		EXPECT_NEAR(
+		        sample.values("plasticStrain", 0, 0)[c], always.values("plasticStrain", 0, 0)[c], 100 * bound);
 }
 
 TEST(HeldSteps, aLongRestDoesNotMakeAnImpactSlow) // the rate is that of the step that leaves the rest
 {
-	const double dt = 1e-7;
+	const double dt     = 1e-7;
 	Loose        rested = Loose::concrete(5), fresh = rested;
 	const auto   still = [](std::size_t) { return PlaneTensor { 0, 0, 0, 0 }; };
 	const auto   hit   = [](std::size_t i) { return crushing(1e-4, i); };
@@ -241,19 +250,25 @@ TEST(HeldSteps, placeDoesNotMatterBitByBit) // neighbours that move, rest, are d
 	for (const unsigned interval : { 1u, 3u })
 		for (const unsigned mask : { everything, unsigned(ConcreteEffects::Flow) })
 			for (const bool energy : { false, true }) {
-				constexpr std::size_t count = 21;
-				Loose                 reference   = Loose::concrete(count, mask);
-				reference.group().flowInterval    = interval;
+				constexpr std::size_t count     = 21;
+				Loose                 reference = Loose::concrete(count, mask);
+				reference.group().flowInterval  = interval;
 				for (int s = 1; s <= 61; s++)
 					reference.step([&](std::size_t i) { return path(s, i); }, 1e-7, energy);
 				for (const std::size_t shift : { 1u, 2u, 3u, 250u }) {
 					Loose shifted                = Loose::concrete(count, mask, shift);
 					shifted.group().flowInterval = interval;
 					for (int s = 1; s <= 61; s++)
-						shifted.step([&](std::size_t i) { return i < shift ? path(s, 1) : path(s, i - shift); }, 1e-7, energy);
+						shifted.step(
+						        [&](std::size_t i) {
+							        return i < shift ? path(s, 1) : path(s, i - shift);
+						        },
+						        1e-7,
+						        energy);
 					for (std::size_t i = 0; i < count; i++)
 						ASSERT_EQ(reference.outputs(i), shifted.outputs(i + shift))
-						        << "interval " << interval << ", mask " << mask << ", triangle " << i << ", moved by " << shift;
+						        << "interval " << interval << ", mask " << mask << ", triangle "
+						        << i << ", moved by " << shift;
 				}
 			}
 }
@@ -268,34 +283,47 @@ TEST(HeldSteps, energyBookClosesInEveryStep) // ½(σ_old + σ_new):Δε = Δ(st
 		for (const int opened : { 1, 50, 75, 78 }) { // before, in motion, at rest, while flow waits
 			Loose sample                = Loose::concrete(13);
 			sample.group().flowInterval = interval;
-			const auto energies = [&](std::size_t i, std::size_t k) {
-				const auto elastic = sample.tensor("lastStrain", i, k) - sample.tensor("plasticStrain", i, k);
-				return 0.5 * doubleDot(sample.tensor("lastStress", i, k), elastic) + last(sample.values("stiffeningEnergy", i, k))
-				        + last(sample.values("plasticDissipation", i, k)) + last(sample.values("damageDissipation", i, k));
+			const auto energies         = [&](std::size_t i, std::size_t k) {
+                                const auto elastic
+                                        = sample.tensor("lastStrain", i, k) - sample.tensor("plasticStrain", i, k);
+                                return 0.5 * doubleDot(sample.tensor("lastStress", i, k), elastic)
+                                        + last(sample.values("stiffeningEnergy", i, k))
+                                        + last(sample.values("plasticDissipation", i, k))
+                                        + last(sample.values("damageDissipation", i, k));
 			};
-			double work[13][3] = {}, first[13][3] = {}, dissipated = 0;
+			double      work[13][3] = {}, first[13][3] = {}, dissipated = 0;
 			PlaneTensor strain[13][3], stress[13][3];
 			for (int s = 1; s <= 200; s++) {
-				const StepEnergy e     = sample.step([&](std::size_t i) { return path(s, i); }, 1e-7, s >= opened);
-				double           total = 0;
+				const StepEnergy e
+				        = sample.step([&](std::size_t i) { return path(s, i); }, 1e-7, s >= opened);
+				double total = 0;
 				for (std::size_t i = 0; s >= opened && i < 13; i++)
 					for (std::size_t k = 0; k < 3; k++) {
-						const PlaneTensor newStrain = sample.tensor("lastStrain", i, k), newStress = sample.tensor("lastStress", i, k);
+						const PlaneTensor newStrain = sample.tensor("lastStrain", i, k),
+						                  newStress = sample.tensor("lastStress", i, k);
 						ASSERT_LT(norm(newStrain - path(s, i)), 1e-12) << "step " << s;
 						const double now = energies(i, k);
 						total += now * sample.system.topology.reference(i).area() / 3;
 						if (s > opened) {
-							work[i][k] += 0.5 * doubleDot(stress[i][k] + newStress, newStrain - strain[i][k]);
-							ASSERT_NEAR(now - first[i][k], work[i][k], 1e-9 * (1 + std::abs(now)))
-							        << "opened " << opened << ", interval " << interval << ", step " << s << ", triangle " << i;
+							work[i][k] += 0.5
+							        * doubleDot(stress[i][k] + newStress,
+							                    newStrain - strain[i][k]);
+							ASSERT_NEAR(
+							        now - first[i][k],
+							        work[i][k],
+							        1e-9 * (1 + std::abs(now)))
+							        << "opened " << opened << ", interval " << interval
+							        << ", step " << s << ", triangle " << i;
 						} else
 							first[i][k] = now;
 						strain[i][k] = newStrain;
 						stress[i][k] = newStress;
-						dissipated   = std::max(dissipated, last(sample.values("plasticDissipation", i, k)));
+						dissipated   = std::max(
+                                                        dissipated, last(sample.values("plasticDissipation", i, k)));
 					}
 				if (s >= opened) {
-					EXPECT_NEAR(e.elastic + e.plastic + e.damage, total, 1e-10 * total) << "step " << s;
+					EXPECT_NEAR(e.elastic + e.plastic + e.damage, total, 1e-10 * total)
+					        << "step " << s;
 				}
 			}
 			EXPECT_GT(dissipated, 100); // [J/m³]
@@ -310,9 +338,10 @@ double largestModulus() { return Material().lambda() + 2 * Material().shear; }
 struct IntervalError {
 	double difference = 0, bound = 0, stress = 0;
 };
-IntervalError intervalError(unsigned interval, int steps, double dt, const std::function<PlaneTensor(int, std::size_t)>& path)
+IntervalError
+intervalError(unsigned interval, int steps, double dt, const std::function<PlaneTensor(int, std::size_t)>& path)
 {
-	IntervalError error;
+	IntervalError     error;
 	const std::size_t count = 17;
 	Loose             every = Loose::concrete(count), some = every;
 	some.group().flowInterval = interval;
@@ -321,7 +350,8 @@ IntervalError intervalError(unsigned interval, int steps, double dt, const std::
 		every.step(strain, dt);
 		some.step(strain, dt);
 		for (std::size_t i = 0; i < count; i++) {
-			error.bound      = std::max(error.bound, largestModulus() * interval * norm(path(s, i) - path(s - 1, i)));
+			error.bound = std::max(
+			        error.bound, largestModulus() * interval * norm(path(s, i) - path(s - 1, i)));
 			error.difference = std::max(error.difference, norm(every.meanStress(i) - some.meanStress(i)));
 			error.stress     = std::max(error.stress, norm(every.meanStress(i)));
 		}
@@ -339,8 +369,16 @@ TEST(FlowInterval, errorStaysBelowItsBoundInThreeScenes)
 	};
 	const Scene scenes[] = {
 		{ "monotone compression", 1e-6, 0, 1500, [](int s, std::size_t i) { return crushing(1e-6 * s, i); } },
-		{ "cyclic", 1e-6, 1, 1500, [](int s, std::size_t i) { return crushing(4e-4 * (1 - std::cos(0.0125 * s)), i); } },
-		{ "impact", 1e-7, 0, 200, [](int s, std::size_t i) { return crushing(1e-5 * s * std::min(1., s / 40.), i); } },
+		{ "cyclic",
+		  1e-6,
+		  1,
+		  1500,
+		  [](int s, std::size_t i) { return crushing(4e-4 * (1 - std::cos(0.0125 * s)), i); } },
+		{ "impact",
+		  1e-7,
+		  0,
+		  200,
+		  [](int s, std::size_t i) { return crushing(1e-5 * s * std::min(1., s / 40.), i); } },
 	};
 	for (const Scene& scene : scenes)
 		for (const unsigned interval : { 2u, 4u, 8u }) {
@@ -360,7 +398,7 @@ TEST(FlowInterval, solvesEveryStepInDamagedSubElements)
 	some.group().flowInterval = 5;
 	int waited = 0, seen = 0;
 	for (int s = 1; s <= 303; s++) {
-		const double patient = 0.01; // patientDamage
+		const double                       patient = 0.01; // patientDamage
 		std::vector<std::array<double, 3>> before;
 		for (std::size_t i = 0; i < count; i++)
 			before.push_back(some.group().damage(i));
@@ -385,7 +423,7 @@ TEST(FlowInterval, timeOfAllItsStepsCounts) // one step of many times the strain
 {
 	Loose some = Loose::concrete(7), whole = some;
 	some.group().flowInterval = 3;
-	const auto at = [](double t) { return [=](std::size_t i) { return crushing(t, i); }; };
+	const auto at             = [](double t) { return [=](std::size_t i) { return crushing(t, i); }; };
 	some.step(at(1e-5), 1e-7);
 	some.step(at(5e-5), 4e-7);
 	some.step(at(1e-4), 5e-7);
@@ -405,8 +443,8 @@ TEST(FlowInterval, timeOfAllItsStepsCounts) // one step of many times the strain
 
 TEST(FlowInterval, stressOfTheMomentKnowsTheTimeThatWaited)
 {
-	const double dt   = 1e-7;
-	Loose        some = Loose::concrete(7, everything);
+	const double dt           = 1e-7;
+	Loose        some         = Loose::concrete(7, everything);
 	some.group().flowInterval = 3;
 	for (int s = 1; s <= 50; s++) {
 		some.step([&](std::size_t i) { return crushing(5e-6 * s, i); }, dt);
@@ -418,13 +456,14 @@ TEST(FlowInterval, stressOfTheMomentKnowsTheTimeThatWaited)
 		const auto told = solved.system.stress(4, dt);
 		solved.step(next, dt, true); // the book keeps the stress
 		for (std::size_t k = 0; k < 3; k++)
-			EXPECT_LT(norm(told[k] - solved.tensor("lastStress", 4, k)), 1e-9 * norm(told[k])) << "step " << s;
+			EXPECT_LT(norm(told[k] - solved.tensor("lastStress", 4, k)), 1e-9 * norm(told[k]))
+			        << "step " << s;
 	}
 }
 
 TEST(FlowInterval, goesOnWithTheSameBitsFromItsClock)
 {
-	const auto path = [](int s) { return [=](std::size_t i) { return crushing(5e-6 * s, i); }; };
+	const auto path  = [](int s) { return [=](std::size_t i) { return crushing(5e-6 * s, i); }; };
 	Loose      whole = Loose::concrete(9), loaded = whole;
 	whole.group().flowInterval = loaded.group().flowInterval = 4;
 	for (int s = 1; s <= 30; s++)
@@ -432,7 +471,8 @@ TEST(FlowInterval, goesOnWithTheSameBitsFromItsClock)
 	for (const StateField& f : whole.group().fields())
 		for (std::size_t i = 0; i < 9; i++)
 			for (std::size_t k = 0; k < 3; k++)
-				loaded.group().set(*loaded.group().field(f.name), i, k, whole.values(f.name, i, k).data());
+				loaded.group().set(
+				        *loaded.group().field(f.name), i, k, whole.values(f.name, i, k).data());
 	loaded.group().fillUp();
 	loaded.group().flowClock = whole.group().flowClock;
 	EXPECT_EQ(whole.group().flowClock.steps, 2u);
@@ -446,7 +486,8 @@ TEST(FlowInterval, goesOnWithTheSameBitsFromItsClock)
 
 // --- thresholds
 
-template <class Law> class Threshold : public testing::Test { };
+template <class Law> class Threshold : public testing::Test {
+};
 template <class... Laws> struct TypesOf {
 	using Type = testing::Types<Laws...>;
 };
@@ -456,11 +497,13 @@ TYPED_TEST(Threshold, isCrossedWithTheBitsOfTheLaw)
 {
 	if constexpr (!TypeParam::hasThreshold(0)) GTEST_SKIP() << "this law has none";
 	else {
-		// Two samples of two tiles. In one of them every tile has a triangle beyond the threshold, so it runs the law.
-		const auto amplitude = [](std::size_t i) { return i % 256 == 7 ? 5e-2 : 2e-2 * (1 + double(i % 13)) / 13; };
-		const auto path      = [](double t, double size, std::size_t i) {
-                        const double phase = 0.3 * double(i);
-                        return (size * t) * PlaneTensor { std::sin(phase), std::cos(phase), 0, std::sin(2 * phase) };
+		// Two samples of two tiles. In one of them every tile has a triangle beyond the threshold, so it runs
+		// the law.
+		const auto amplitude
+		        = [](std::size_t i) { return i % 256 == 7 ? 5e-2 : 2e-2 * (1 + double(i % 13)) / 13; };
+		const auto path = [](double t, double size, std::size_t i) {
+			const double phase = 0.3 * double(i);
+			return (size * t) * PlaneTensor { std::sin(phase), std::cos(phase), 0, std::sin(2 * phase) };
 		};
 		Loose      below = Loose::of<TypeParam>(300, 0), law = below;
 		const auto go = [&](double t) {
@@ -468,18 +511,18 @@ TYPED_TEST(Threshold, isCrossedWithTheBitsOfTheLaw)
 			law.step([&](std::size_t i) { return path(t, amplitude(i), i); }, 1e-7);
 		};
 		law.step([&](std::size_t i) { return path(i % 256 == 7 ? 1 : 1e-9, amplitude(i), i); }, 1e-7);
-		const auto        reached  = [&](const Loose& sample) {
-                        // a state that has changed
-                        std::size_t count = 0;
-                        for (std::size_t i = 0; i < 300; i++) {
-                                const Loose virgin = Loose::of<TypeParam>(1, 0);
-                                for (const StateField& f : virgin.system.group[0]->fields())
-                                        if (sample.values(f.name, i, 1) != virgin.values(f.name, 0, 1)) {
-                                                count++;
-                                                break;
-                                        }
-                        }
-                        return count;
+		const auto reached = [&](const Loose& sample) {
+			// a state that has changed
+			std::size_t count = 0;
+			for (std::size_t i = 0; i < 300; i++) {
+				const Loose virgin = Loose::of<TypeParam>(1, 0);
+				for (const StateField& f : virgin.system.group[0]->fields())
+					if (sample.values(f.name, i, 1) != virgin.values(f.name, 0, 1)) {
+						count++;
+						break;
+					}
+			}
+			return count;
 		};
 		EXPECT_EQ(reached(below), 0u);
 		EXPECT_EQ(reached(law), 2u);
@@ -487,7 +530,8 @@ TYPED_TEST(Threshold, isCrossedWithTheBitsOfTheLaw)
 			go(s == 1 ? 1e-3 : 0.01 * s);
 			for (std::size_t i = 0; i < 300; i++)
 				if (i % 256 != 7) {
-					ASSERT_EQ(below.outputs(i), law.outputs(i)) << "step " << s << ", triangle " << i;
+					ASSERT_EQ(below.outputs(i), law.outputs(i))
+					        << "step " << s << ", triangle " << i;
 				}
 			if (s == 1) {
 				EXPECT_EQ(reached(below), 0u);
@@ -497,31 +541,36 @@ TYPED_TEST(Threshold, isCrossedWithTheBitsOfTheLaw)
 	}
 }
 
-TYPED_TEST(Threshold, leavesTheStateAloneBelow) // what the loop for virgin tiles relies on: the law itself says the same
+TYPED_TEST(
+        Threshold, leavesTheStateAloneBelow) // what the loop for virgin tiles relies on: the law itself says the same
 {
 	if constexpr (!TypeParam::hasThreshold(0)) GTEST_SKIP() << "this law has none";
 	else {
-		typename TypeParam::Parameters      parameters;
-		const typename TypeParam::Prepared  law(parameters);
-		const TriangleProperties            properties(1e-6, -1, 1, { 0, 0, 0, 0 });
-		const auto                          own    = TypeParam::propertiesOf(law, properties);
-		const auto                          virgin = TypeParam::virgin(law, properties);
-		Random                              random(77);
-		int                                 below = 0, beyond = 0;
+		typename TypeParam::Parameters     parameters;
+		const typename TypeParam::Prepared law(parameters);
+		const TriangleProperties           properties(1e-6, -1, 1, { 0, 0, 0, 0 });
+		const auto                         own    = TypeParam::propertiesOf(law, properties);
+		const auto                         virgin = TypeParam::virgin(law, properties);
+		Random                             random(77);
+		int                                below = 0, beyond = 0;
 		for (int i = 0; i < 20000; i++) {
 			const double      size = std::pow(10., random.uniform(-6, -2));
-			const PlaneTensor strain { random.uniform(-size, size), random.uniform(-size, size), 0, random.uniform(-size, size) };
-			auto              state  = virgin;
-			const PlaneTensor stress = TypeParam::template advance<0>(law, own, strain, 1e-7, state);
-			const bool        maybe  = TypeParam::template beyondThreshold<0>(law, own, strain);
+			const PlaneTensor strain {
+				random.uniform(-size, size), random.uniform(-size, size), 0, random.uniform(-size, size)
+			};
+			auto                state  = virgin;
+			const PlaneTensor   stress = TypeParam::template advance<0>(law, own, strain, 1e-7, state);
+			const bool          maybe  = TypeParam::template beyondThreshold<0>(law, own, strain);
 			std::vector<double> was(100), is(100);
 			auto                copy = virgin;
 			TypeParam::template fields<0>(copy, StoreFields<double> { was.data(), 1 });
 			TypeParam::template fields<0>(state, StoreFields<double> { is.data(), 1 });
 			const bool changed = was != is;
 			(maybe ? beyond : below)++;
-			EXPECT_FALSE(changed && !maybe) << "strain " << strain.xx << ", " << strain.yy << ", " << strain.xy;
-			EXPECT_FALSE(maybe && !changed) << "strain " << strain.xx << ", " << strain.yy << ", " << strain.xy; // not early, but for rounding
+			EXPECT_FALSE(changed && !maybe)
+			        << "strain " << strain.xx << ", " << strain.yy << ", " << strain.xy;
+			EXPECT_FALSE(maybe && !changed) << "strain " << strain.xx << ", " << strain.yy << ", "
+			                                << strain.xy; // not early, but for rounding
 			if (!maybe) {
 				EXPECT_EQ(norm(stress - elasticStress(law.lambda, law.twoShear, strain)), 0);
 			}
@@ -535,8 +584,12 @@ TYPED_TEST(Threshold, isFoundAgainAfterTheBookWasClosedAndAfterLoading)
 {
 	if constexpr (!TypeParam::hasThreshold(0)) GTEST_SKIP() << "this law has none";
 	else {
-		const auto path = [](int s) { return [=](std::size_t i) { return (1e-5 * s * (1 + double(i % 7))) * PlaneTensor { 1, -0.3, 0, 0.5 }; }; };
-		Loose      booked = Loose::of<TypeParam>(20, 0), plain = booked;
+		const auto path = [](int s) {
+			return [=](std::size_t i) {
+				return (1e-5 * s * (1 + double(i % 7))) * PlaneTensor { 1, -0.3, 0, 0.5 };
+			};
+		};
+		Loose booked = Loose::of<TypeParam>(20, 0), plain = booked;
 		for (int s = 1; s <= 150; s++) {
 			booked.step(path(s), 1e-7, s < 2 || (s > 40 && s < 90));
 			plain.step(path(s), 1e-7);
@@ -545,15 +598,22 @@ TYPED_TEST(Threshold, isFoundAgainAfterTheBookWasClosedAndAfterLoading)
 				for (const StateField& f : plain.group().fields())
 					for (std::size_t i = 0; i < 20; i++)
 						for (std::size_t k = 0; k < 3; k++)
-							loaded.group().set(*loaded.group().field(f.name), i, k, plain.values(f.name, i, k).data());
+							loaded.group().set(
+							        *loaded.group().field(f.name),
+							        i,
+							        k,
+							        plain.values(f.name, i, k).data());
 				loaded.group().fillUp();
 				plain = loaded;
 			}
 		}
 		for (const StateField& f : plain.group().fields()) // without the book's
 			for (std::size_t i = 0; i < 20; i++)
-				for (std::size_t c = 0; c < f.components(); c++) // the book's loop may round in another way
-					EXPECT_NEAR(plain.values(f.name, i, 0)[c], booked.values(f.name, i, 0)[c], 1e-13) << f.name;
+				for (std::size_t c = 0; c < f.components();
+				     c++) // the book's loop may round in another way
+					EXPECT_NEAR(
+					        plain.values(f.name, i, 0)[c], booked.values(f.name, i, 0)[c], 1e-13)
+					        << f.name;
 	}
 }
 

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Cost of one step of triangles by rotation treatment and size, one thread: elastic, with the energy book, and concrete with all effects that
-// moves, rests (only round-off moves it) or solves its flow in every fourth step.
+// Cost of one step of triangles by rotation treatment and size, one thread: elastic, with the energy book, and concrete
+// with all effects that moves, rests (only round-off moves it) or solves its flow in every fourth step.
 #include "../TriangleSamples.hpp"
 
 #include <benchmark/benchmark.h>
@@ -27,7 +27,8 @@ void triangleStep(benchmark::State& state, const Scene& scene)
 	const double   width  = 0.1;
 	const Mesh     mesh   = rectangle(columns, rows, width, 2 * width, 0.1);
 	TriangleSystem system = makeSystem(mesh, Material(), scene.rotation);
-	if (scene.concrete) makeConcrete(system, ConcreteParameters(), ConcreteEffects::All & ~unsigned(ConcreteEffects::Energy));
+	if (scene.concrete)
+		makeConcrete(system, ConcreteParameters(), ConcreteEffects::All & ~unsigned(ConcreteEffects::Energy));
 	system.group[0]->flowInterval = scene.flowInterval;
 	agitate(system, scene.rests ? 1e-20 : 0.5, scene.rests ? 1e-20 : 10, 71);
 	const StepSettings settings = stepOf(0.5 * criticalStep(mesh, Material(), scene.rotation), scene.energy);
@@ -43,7 +44,8 @@ void sizes(benchmark::internal::Benchmark* b)
 	b->ArgName("columns")->Arg(20)->Arg(57)->Arg(180); // 1600, 12 996 and 129 600 triangles
 }
 
-constexpr auto none = RotationTreatment::None, corotational = RotationTreatment::Corotational, cosserat = RotationTreatment::Cosserat;
+constexpr auto none = RotationTreatment::None, corotational = RotationTreatment::Corotational,
+               cosserat = RotationTreatment::Cosserat;
 BENCHMARK_CAPTURE(triangleStep, none, Scene { none, false, false, false, 1 })->Apply(sizes);
 BENCHMARK_CAPTURE(triangleStep, corotational, Scene { corotational, false, false, false, 1 })->Apply(sizes);
 BENCHMARK_CAPTURE(triangleStep, cosserat, Scene { cosserat, false, false, false, 1 })->Apply(sizes);

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Concrete: viscoplastic Mohr-Coulomb flow, tensorial damage, equation of state (Zubelewicz 2018, section 3). Its parts are in concrete/.
+// Concrete: viscoplastic Mohr-Coulomb flow, tensorial damage, equation of state (Zubelewicz 2018, section 3). Its parts
+// are in concrete/.
 #pragma once
 
 #include <pkg/ddem/kernel/laws/concrete/ConcreteLaw.hpp>
@@ -83,7 +84,10 @@ struct ConcreteDamage : LawDefaults {
 	static constexpr bool holds(unsigned effects) { return effects & ConcreteEffects::Flow; }
 	template <unsigned effects, class Number>
 	static PlaneTensorOf<Number>
-	hold(const Prepared& law, const Properties<Number>&, const PlaneTensorOf<Number>& strain, const State<Number>& s)
+	hold(const Prepared& law,
+	     const Properties<Number>&,
+	     const PlaneTensorOf<Number>& strain,
+	     const State<Number>&         s)
 	{
 		const PlaneTensorOf<Number> elastic = strain - s.plasticStrain;
 		PlaneTensorOf<Number>       stress  = elasticStress(law.lambda, law.twoShear, elastic);
@@ -103,7 +107,10 @@ struct ConcreteDamage : LawDefaults {
 		else
 			return stress;
 	}
-	template <class Number> static const PlaneTensorOf<Number>& evaluatedStrain(const State<Number>& s) { return s.strain; }
+	template <class Number> static const PlaneTensorOf<Number>& evaluatedStrain(const State<Number>& s)
+	{
+		return s.strain;
+	}
 	/// Up to η_0 = patientDamage.
 	template <unsigned effects, class Number> static auto flowMayWait(const Prepared& law, const State<Number>& s)
 	{
@@ -116,7 +123,8 @@ struct ConcreteDamage : LawDefaults {
 		s.stress     = stress;
 	}
 
-	/// The book begins where the law was last evaluated: the stress of then, which the book needs; and the strain, where only the book does.
+	/// The book begins where the law was last evaluated: the stress of then, which the book needs; and the strain,
+	/// where only the book does.
 	template <unsigned effects> static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)
 	{
 		if constexpr (!(effects & (ConcreteEffects::Flow | ConcreteEffects::Damage))) s.strain = strain;
@@ -137,10 +145,15 @@ struct ConcreteDamage : LawDefaults {
 		return s.stress;
 	}
 	template <unsigned effects, class Number>
-	static EnergyDensities<Number>
-	energies(const Prepared&, const PlaneTensorOf<Number>& strain, const PlaneTensorOf<Number>& stress, const State<Number>& s)
+	static EnergyDensities<Number> energies(
+	        const Prepared&,
+	        const PlaneTensorOf<Number>& strain,
+	        const PlaneTensorOf<Number>& stress,
+	        const State<Number>&         s)
 	{
-		return { 0.5 * doubleDot(stress, strain - s.plasticStrain) + s.stiffeningEnergy, s.plasticDissipation, s.damageDissipation };
+		return { 0.5 * doubleDot(stress, strain - s.plasticStrain) + s.stiffeningEnergy,
+			 s.plasticDissipation,
+			 s.damageDissipation };
 	}
 	static double damage(const Prepared& law, const Properties<double>&, const State<double>& s) { return damageRatio(law, s); }
 	static double stiffening(const Prepared& law, const State<double>& s) { return stiffnessFactor(law, s); }

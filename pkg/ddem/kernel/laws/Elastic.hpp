@@ -48,7 +48,9 @@ struct Elastic : LawDefaults {
 	        const State<Number>&)
 	{
 		// plane strain: nothing out of the plane
-		return { 0.5 * (stress.xx * strain.xx + stress.yy * strain.yy) + stress.xy * strain.xy, Number(0.), Number(0.) };
+		return { 0.5 * (stress.xx * strain.xx + stress.yy * strain.yy) + stress.xy * strain.xy,
+			 Number(0.),
+			 Number(0.) };
 	}
 };
 

@@ -141,13 +141,11 @@ struct ScalarDamage : LawDefaults {
 	}
 
 	static constexpr bool hasThreshold(unsigned) { return true; }
-	/// Where ε̃ may be above κ_0, without a root: with mean m and radius r of Mohr's circle, ε̃² = 2 (m² + r²) where both principal
-	/// strains are positive, m > r, and else ε̃ = m + r > κ_0 where r > κ_0 − m. A touch early, so that rounding does not matter.
+	/// Where ε̃ may be above κ_0, without a root: with mean m and radius r of Mohr's circle, ε̃² = 2 (m² + r²)
+	/// where both principal strains are positive, m > r, and else ε̃ = m + r > κ_0 where r > κ_0 − m. A touch
+	/// early, so that rounding does not matter.
 	template <unsigned effects, class Number>
-	static auto beyondThreshold(
-	        const Prepared& law,
-	        const Properties<Number>&,
-	        const PlaneTensorOf<Number>& strain)
+	static auto beyondThreshold(const Prepared& law, const Properties<Number>&, const PlaneTensorOf<Number>& strain)
 	{
 		using std::max;
 		const double first = 2 * (1 - 1e-12) * law.firstStrain; // of the circle's diameter, as all below

@@ -79,12 +79,10 @@ struct VonMises : LawDefaults {
 	static State<double> virgin(const Prepared&, const TriangleProperties&) { return {}; }
 
 	static constexpr bool hasThreshold(unsigned) { return true; }
-	/// Where |s| may be above R; in plane strain (|s|/2μ)² = ε:ε − (tr ε)²/3. A touch early, so that rounding does not matter.
+	/// Where |s| may be above R; in plane strain (|s|/2μ)² = ε:ε − (tr ε)²/3. A touch early, so that rounding does
+	/// not matter.
 	template <unsigned effects, class Number>
-	static auto beyondThreshold(
-	        const Prepared& law,
-	        const Properties<Number>&,
-	        const PlaneTensorOf<Number>& strain)
+	static auto beyondThreshold(const Prepared& law, const Properties<Number>&, const PlaneTensorOf<Number>& strain)
 	{
 		const double first = (1 - 1e-12) * law.firstRadius / law.twoShear;
 		const Number sum   = strain.xx + strain.yy;

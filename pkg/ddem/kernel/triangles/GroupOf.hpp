@@ -13,7 +13,8 @@ namespace yade::ddem {
 
 namespace detail {
 
-	/// Calls use(std::integral_constant<unsigned, mask>) for the distinct mask that a mask known at run time amounts to.
+	/// Calls use(std::integral_constant<unsigned, mask>) for the distinct mask that a mask known at run time
+	/// amounts to.
 	template <class Law, class Use, std::size_t... masks>
 	auto withMask(unsigned effects, Use&& use, std::index_sequence<masks...>)
 	{
@@ -169,7 +170,8 @@ public:
 		const std::size_t first = begin + tile * tileSize;
 		const std::size_t last  = std::min(first + tileSize, end);
 		if constexpr (Law::hasThreshold(Law::allEffects)) {
-			if (loops.below && untouched[tile] && loops.below(arrays, constants, t, dt, first, last, sum)) return;
+			if (loops.below && untouched[tile] && loops.below(arrays, constants, t, dt, first, last, sum))
+				return;
 			untouched[tile] = false;
 		}
 		loops.law(arrays, constants, t, dt, first, last, sum);
@@ -230,7 +232,7 @@ private:
 	RotationTreatment                                rotation = RotationTreatment::Cosserat;
 	bool                                             widest   = true;
 	TileLoops<Law>                                   loops;
-	std::vector<char>                                untouched; ///< tiles that have not left it; empty for laws without threshold
+	std::vector<char> untouched; ///< tiles that have not left it; empty for laws without threshold
 	std::vector<Property>                            own;
 	std::vector<std::pair<const char*, const char*>> propertyNames;
 
@@ -242,12 +244,15 @@ private:
 		if constexpr (!Law::hasThreshold(Law::allEffects)) return;
 		State               virgin = Law::virgin(prepared, TriangleProperties());
 		std::vector<double> number(columnsOf(on)); // without what only the book has, which comes last
-		withMask<Law>(on, [&](auto mask) { Law::template fields<mask()>(virgin, StoreFields<double> { number.data(), 1 }); });
+		withMask<Law>(on, [&](auto mask) {
+			Law::template fields<mask()>(virgin, StoreFields<double> { number.data(), 1 });
+		});
 		untouched.assign(tiles(), true);
 		for (std::size_t i = 0; i < triangles(); i++)
 			for (std::size_t k = 0; k < 3; k++)
 				for (std::size_t c = 0; c < number.size(); c++)
-					if (!(columns.row(i, k)[c * columns.columnStep(i)] == number[c])) untouched[i / tileSize] = false;
+					if (!(columns.row(i, k)[c * columns.columnStep(i)] == number[c]))
+						untouched[i / tileSize] = false;
 	}
 
 	static ListFields fieldsOf(unsigned mask)

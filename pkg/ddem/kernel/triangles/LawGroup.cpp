@@ -45,7 +45,9 @@ std::size_t LawGroup::bytesPerTriangle() const
 
 void LawGroup::beginStep(double dt)
 {
-	if (flowInterval < 1) throw std::invalid_argument("flowInterval = 0 [steps] must be at least 1, which solves flow in every step.");
+	if (flowInterval < 1)
+		throw std::invalid_argument(
+		        "flowInterval = 0 [steps] must be at least 1, which solves flow in every step.");
 	flowClock.steps++;
 	flowClock.time += dt;
 	held.rest      = rest * std::numeric_limits<double>::epsilon();

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Body of the loops over tiles, written once for all laws, frames, effects and instruction sets. Included only by the files that
-// LawLoops.cpp.in makes.
+// Body of the loops over tiles, written once for all laws, frames, effects and instruction sets. Included only by the
+// files that LawLoops.cpp.in makes.
 #pragma once
 
 #include <pkg/ddem/kernel/triangles/LawLoops.hpp>
@@ -52,13 +52,14 @@ template <class Number> inline double sumOfFirst(const Number& value, std::size_
 /// Bound on the change of a strain at rest [-], see LawLoops.hpp.
 template <class Number> inline Number restBound(const LoadedElement<Number>& element, double rest)
 {
-	const auto  size = [](const PlaneVector<Number>& v) { return abs(v.x) + abs(v.y); };
-	const auto& arm  = element.reference.arm;
+	const auto   size = [](const PlaneVector<Number>& v) { return abs(v.x) + abs(v.y); };
+	const auto&  arm  = element.reference.arm;
 	const Number arms = size(arm[0]) + size(arm[1]) + size(arm[2]);
 	return (Number(rest) * (size(element.centre) + arms) * arms) * (Number(1) / element.reference.twiceSubArea());
 }
 
-/// Stress and state of a sub-element (or of a batch of them) whose law may be held; its columns begin at `column`. `state` has been loaded.
+/// Stress and state of a sub-element (or of a batch of them) whose law may be held; its columns begin at `column`.
+/// `state` has been loaded.
 template <class Law, unsigned effects, class Number>
 inline PlaneTensorOf<Number> holdOrAdvance(
         const TileState<Law>&                            tile,
@@ -70,15 +71,15 @@ inline PlaneTensorOf<Number> holdOrAdvance(
         typename Law::template State<Number>&            state)
 {
 	using std::max;
-	constexpr bool               energy = effects & LawEffects::Energy;
-	const auto&                  law    = *tile.law;
-	const std::size_t            stride = 3 * tile.stride;
-	const PlaneTensorOf<Number>  change = strain - Law::evaluatedStrain(state);
-	auto                         lanes  = !(max(max(abs(change.xx), abs(change.yy)), abs(change.xy)) <= bound); // NaN moves
-	auto                         later  = lanes;
-	bool                         again = false, every = all(lanes);
-	double                       time = dt;
-	PlaneTensorOf<Number>        stress {};
+	constexpr bool              energy = effects & LawEffects::Energy;
+	const auto&                 law    = *tile.law;
+	const std::size_t           stride = 3 * tile.stride;
+	const PlaneTensorOf<Number> change = strain - Law::evaluatedStrain(state);
+	auto                  lanes = !(max(max(abs(change.xx), abs(change.yy)), abs(change.xy)) <= bound); // NaN moves
+	auto                  later = lanes;
+	bool                  again = false, every = all(lanes);
+	double                time = dt;
+	PlaneTensorOf<Number> stress {};
 	if (__builtin_expect(!every || tile.held.flowWaits, false)) {
 		if (tile.held.flowWaits) { // those that may wait have another time behind them than the others
 			const auto patient = Law::template flowMayWait<effects>(law, state);
@@ -92,7 +93,7 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 			every = all(lanes);
 		}
 		if (!every) {
-			stress = Law::template hold<effects>(law, own, strain, state);
+			stress          = Law::template hold<effects>(law, own, strain, state);
 			const bool none = !any(lanes);
 			if constexpr (energy) {
 				auto kept = state;
@@ -114,7 +115,8 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 			Law::template fields<effects>(state, StoreFields<Number> { column, stride });
 			return s;
 		}
-		Law::template fields<effects>(state, StoreSomeFields<Number, decltype(lanes)> { column, stride, lanes });
+		Law::template fields<effects>(
+		        state, StoreSomeFields<Number, decltype(lanes)> { column, stride, lanes });
 		stress = select(lanes, s, stress);
 		if (energy || again) Law::template fields<effects>(state, LoadFields<Number> { column, stride });
 		if (!again) return stress;
@@ -124,10 +126,11 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 	}
 }
 
-/** Whole batches: rows of `a` from `begin` on, places in the tile from `lane` on. Of the last batch `real` lanes count in the energies.
- * `below`: of a virgin tile below the law's threshold; \returns false as soon as that is reached.
- * InstructionSet is only a tag that keeps the functions of different instruction sets apart; flatten inlines everything, so that no
- * shared inline function is emitted with the instructions of one of them; one copy of the code gives every batch the same bits. */
+/** Whole batches: rows of `a` from `begin` on, places in the tile from `lane` on. Of the last batch `real` lanes
+ * count in the energies. `below`: of a virgin tile below the law's threshold; \returns false as soon as that is
+ * reached. InstructionSet is only a tag that keeps the functions of different instruction sets apart; flatten
+ * inlines everything, so that no shared inline function is emitted with the instructions of one of them; one copy
+ * of the code gives every batch the same bits. */
 template <class Law, unsigned effects, bool below, class Frame, class Number, class InstructionSet>
 __attribute__((noinline, noclone, flatten)) bool advanceBatches(
         const ElementArrays&  a,
@@ -162,23 +165,25 @@ __attribute__((noinline, noclone, flatten)) bool advanceBatches(
 		for (std::size_t k = 0; k < 3; k++) {
 			double* const                        column = tile.columns + k * stride + place;
 			typename Law::template State<Number> state {};
-			const PlaneTensorOf<Number>          strain { strains[k].xx, strains[k].yy, Number(0.), strains[k].xy };
-			PlaneTensorOf<Number>                s;
+			const PlaneTensorOf<Number> strain { strains[k].xx, strains[k].yy, Number(0.), strains[k].xy };
+			PlaneTensorOf<Number>       s;
 			if constexpr (below) {
-				s = elasticStress(law.lambda, law.twoShear, strain);
+				s      = elasticStress(law.lambda, law.twoShear, strain);
 				beyond = beyond || Law::template beyondThreshold<effects>(law, own, strain);
 			} else {
 				Law::template fields<effects>(state, LoadFields<Number> { column, 3 * stride });
-				if constexpr (holds) s = holdOrAdvance<Law, effects>(tile, own, strain, bound, dt, column, state);
+				if constexpr (holds)
+					s = holdOrAdvance<Law, effects>(tile, own, strain, bound, dt, column, state);
 				else {
 					s = Law::template advance<effects>(law, own, strain, dt, state);
-					Law::template fields<effects>(state, StoreFields<Number> { column, 3 * stride });
+					Law::template fields<effects>(
+					        state, StoreFields<Number> { column, 3 * stride });
 				}
 			}
 			stress[k] = { s.xx, s.yy, s.xy };
 			if constexpr (energy) {
 				const auto densities = Law::template energies<effects>(law, strain, s, state);
-				storedHere = storedHere + volume * densities.stored;
+				storedHere           = storedHere + volume * densities.stored;
 				if constexpr (dissipates) {
 					plasticHere = plasticHere + volume * densities.plastic;
 					damageHere  = damageHere + volume * densities.damage;
@@ -232,7 +237,9 @@ bool tileLoop(
 	constexpr std::size_t width   = Lanes<Number>::width;
 	const std::size_t     batches = (end - begin) / width, done = batches * width, rest = end - begin - done;
 	static constexpr auto advance = &advanceBatches<Law, effects, below, Frame, Number, InstructionSet>;
-	static_assert(!(below && (effects & LawEffects::Energy)), "a step that is taken again must not have added its energies");
+	static_assert(
+	        !(below && (effects & LawEffects::Energy)),
+	        "a step that is taken again must not have added its energies");
 	if (!advance(a, g, tile, dt, begin, 0, batches, width, sum)) return false;
 	if (rest == 0) return true;
 	FilledBatch filled(a, begin + done, rest, Frame::coreRotates);
@@ -241,7 +248,8 @@ bool tileLoop(
 	return true;
 }
 
-template <class Law, unsigned effects, class Frame, class Number, class InstructionSet> constexpr TileLoops<Law> loopsOfMask()
+template <class Law, unsigned effects, class Frame, class Number, class InstructionSet>
+constexpr TileLoops<Law> loopsOfMask()
 {
 	TileLoops<Law> loops { &tileLoop<Law, effects, false, Frame, Number, InstructionSet>, nullptr };
 	if constexpr (Law::hasThreshold(effects) && !(effects & LawEffects::Energy))

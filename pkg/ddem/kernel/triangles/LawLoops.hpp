@@ -1,26 +1,30 @@
 // GPL v2 or later, see LICENSE.
 // The loops over a tile that a law has: one for every mask of effects, rotation treatment and instruction set.
 //
-// A law need not be evaluated in every step. In a *held* step of a sub-element its stress follows elastically from the present strain
-// and the state of the last evaluation (plastic strain, damage, openness and stiffening stand), and the state stays as it is. What is
-// held is decided for every sub-element by itself, from its own strain and state alone, never by its neighbours or by a history that
-// is not saved: a triangle's forces have the same bits in any lane, tile or domain, and after loading. A batch in which all are held
-// skips the law. There are two reasons to hold, both of laws with LawDefaults::holds:
+// A law need not be evaluated in every step. In a *held* step of a sub-element its stress follows elastically from the
+// present strain and the state of the last evaluation (plastic strain, damage, openness and stiffening stand), and the
+// state stays as it is. What is held is decided for every sub-element by itself, from its own strain and state alone,
+// never by its neighbours or by a history that is not saved: a triangle's forces have the same bits in any lane, tile
+// or domain, and after loading. A batch in which all are held skips the law. There are two reasons to hold, both of
+// laws with LawDefaults::holds:
 //
-// - *Rest*. The strain has changed since the last evaluation by no more than the round-off that it carries itself. Positions are
-//   stored to ε|x|/2, ε = 2^-52, so strain, the change of relative displacements over arms r and twice the area A2 of a sub-element,
-//   is known to about ε |x| Σ|r|/A2, and stress to E times this. The bound is LawGroup::rest times that, with |x| = |x|₁ + Σ|r|₁ of
-//   the core. Within it the law would have added flow of Λ_0 ε_rest, less than the elastic stress is uncertain by, and only because
-//   round-off makes strain jitter: a block at rest would creep by it. The first step beyond the bound evaluates the law from the
-//   strain of the last evaluation, so no strain is lost, however slowly it grows. Its time is that of the step that left the rest: a
-//   rate-dependent law that has slept for a second must not take an impact for slow. Where strain creeps by n steps to a bound, its
-//   rate is then n times too high, and flow, ∝ (ė_N)^(ω_p - 1) per strain, too low by n^(1-ω_p) (4 % for n = 3 in concrete); but a run
-//   of 10^7 steps that all creep like this strains by less than 10^-5 in all.
+// - *Rest*. The strain has changed since the last evaluation by no more than the round-off that it carries itself.
+//   Positions are stored to ε|x|/2, ε = 2^-52, so strain, the change of relative displacements over arms r and twice
+//   the area A2 of a sub-element, is known to about ε |x| Σ|r|/A2, and stress to E times this. The bound is
+//   LawGroup::rest times that, with |x| = |x|₁ + Σ|r|₁ of the core. Within it the law would have added flow of at most
+//   Λ_0 times the bound, and only because round-off makes strain jitter: a block at rest would creep by it. The first
+//   step beyond the bound evaluates the law from the strain of the last evaluation, so no strain is lost, however
+//   slowly it grows. Its time is that of the step that left the rest: a rate-dependent law that has slept for a second
+//   must not take an impact for slow. Where strain creeps by n steps to a bound, its rate is then n times too high, and
+//   flow, ∝ (ė_N)^(ω_p - 1) per strain, too low by n^(1-ω_p) (4 % for n = 3 in concrete); but a run of 10^7 steps that
+//   all creep like this strains by less than 10^-5 in all. Measured: where nothing but round-off moves a block (0.1 m
+//   wide, up to 30 m from the origin) strain stays within half of the bound, so that no law is evaluated.
 // - *Flow waits*: LawGroup::flowInterval, see there.
 //
-// A law with a threshold, LawDefaults::hasThreshold, has a second loop, for tiles that are virgin: elastic, with a look whether any
-// sub-element has reached the threshold. The tile then takes that same step again, with the law, and from then on always. Results have
-// the bits of the law's own loop. It is not for steps with the energy book, which needs the strain of the step before the threshold.
+// A law with a threshold, LawDefaults::hasThreshold, has a second loop, for tiles that are virgin: elastic, with a look
+// whether any sub-element has reached the threshold. The tile then takes that same step again, with the law, and from
+// then on always. Results have the bits of the law's own loop. It is not for steps with the energy book, which needs
+// the strain of the step before the threshold.
 #pragma once
 
 #include <pkg/ddem/kernel/triangles/ElementArrays.hpp>
@@ -60,7 +64,8 @@ template <class Law> struct TileState {
 	HeldSteps                     held;
 };
 
-/// Advances the triangles [begin, end), rows of the arrays, by dt [s]; fills forces, and the energies where the mask has Energy.
+/// Advances the triangles [begin, end), rows of the arrays, by dt [s]; fills forces, and the energies where the mask
+/// has Energy.
 /// \returns false where a threshold was reached: the tile then has to take the step again with its law.
 template <class Law>
 using TileLoop = bool (*)(

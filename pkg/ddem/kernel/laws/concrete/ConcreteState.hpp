@@ -11,7 +11,7 @@ namespace yade::ddem {
 template <class Number> struct ConcreteStateOf {
 	PlaneTensorOf<Number> stress;             ///< σ [Pa], tension positive
 	PlaneTensorOf<Number> strain;             ///< ε when the law was last evaluated [-]
-	PlaneTensorOf<Number> lastStrain;         ///< ε of the last step, which may have been held [-]; for the book of flow
+	PlaneTensorOf<Number> lastStrain; ///< ε of the last step, which may have been held [-]; for the book of flow
 	PlaneTensorOf<Number> plasticStrain;      ///< ε_p [-]
 	PlaneTensorOf<Number> damage;             ///< Ω [-], positive semi-definite
 	Number                stiffening;         ///< B/B_0 − 1 of the equation of state [-], ≥ 0
