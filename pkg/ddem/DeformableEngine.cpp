@@ -155,8 +155,10 @@ shared_ptr<Exposure> DeformableEngine::currentOf(const shared_ptr<Exposure>& sam
 		if (engine->sample != sample) continue;
 		if (!engine->upToDate(now)) return nullptr;
 		if (Omega::instance().isRunning()) return sample;
-		if (engine->exposed) sample->importTriangle(now, row);
-		else
+		if (engine->exposed) {
+			sample->importTriangle(now, row);
+			if (!engine->upToDate(now)) return nullptr; // its body has got another material
+		} else
 			engine->current();
 		return sample;
 	}
@@ -171,8 +173,10 @@ Exposure& DeformableEngine::current()
 	if (!mine) throw std::runtime_error("this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
 	readIfNeeded(now);
 	if (Omega::instance().isRunning()) return *sample;
-	if (exposed) sample->importChanges(now);
-	else // paused between two looks
+	if (exposed) {
+		sample->importChanges(now);
+		readIfNeeded(now); // where a body has got another material
+	} else // paused between two looks
 		sample->exposeAll();
 	exposed = true;
 	return *sample;
@@ -205,8 +209,15 @@ void DeformableEngine::action()
 	readIfNeeded(*scene);
 	if (exposed) {
 		sample->importChanges(*scene);
+		readIfNeeded(*scene); // where a body has got another material
 		EngineOrder::checkDrivenNodes(*scene);
 	}
+	EngineOrder::requireOpenCell(*scene);
+	if (flowInterval > 1 && scene->trackEnergy)
+		throw std::runtime_error(
+		        "O.trackEnergy with DeformableEngine.flowInterval = " + std::to_string(flowInterval)
+		        + ": the energy book does not close where flow waits; set flowInterval = 1, or "
+		          "O.trackEnergy = False");
 	if (virgin) checkStart();
 	virgin = false;
 	for (const auto* newton : order.integrators)
@@ -294,7 +305,10 @@ bool DeformableEngine::timeStepUnchecked(Scene& of) { return !upToDate(of) || gu
 Real DeformableEngine::stableStep(Scene& of, Real enough)
 {
 	readIfNeeded(of);
-	if (exposed) sample->importChanges(of);
+	if (exposed) {
+		sample->importChanges(of);
+		readIfNeeded(of); // where a body has got another material
+	}
 	return sample->timeStep(enough).step;
 }
 

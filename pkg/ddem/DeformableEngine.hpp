@@ -61,7 +61,9 @@ public:
 		((int,groupMask,1<<20,Attr::triggerPostLoad,"Group bit given to deformable bodies (:yref:`Body.groupMask`) and taken out of :yref:`NewtonIntegrator.mask`. "
 			"Where O.engines has several DeformableEngine each needs a bit of its own."))
 		((int,flowInterval,1,Attr::triggerPostLoad,"Steps from one solution of viscoplastic flow to the next; in between undamaged triangles are elastic with the plastic strain they have, and "
-			"damaged ones flow in every step. Cheaper, and for monotone strain off by no more than the stress that the strain of so many steps makes (E m Δε); vibrations faster than the interval flow less."))
+			"damaged ones flow in every step. Cheaper, and for monotone strain off by no more than the stress that the strain of so many steps makes (E m Δε); vibrations faster than the interval flow less. "
+			"Refused above 1 with an equation of state (its moduli would change in jumps and shake the "
+			"sample) and while O.trackEnergy is on."))
 		((std::string,inverted,"stop",Attr::triggerPostLoad,"What to do when a triangle is inside out, that is, its vertices have changed their sense: 'stop' the run with the triangle, its place and the ratio of its areas, or 'warn' once. "
 			"Looked at every 50 steps (10 with an equation of state). A sample that is crushed beyond its bearing capacity may be let go on."))
 		((std::vector<Body::id_t>,ids,,Attr::triggerPostLoad,"Ids of the triangles that this engine moves, with their nodes. Empty: those whose group mask has the engine's bit, "
@@ -76,7 +78,7 @@ public:
 		.def("rulingTriangle",&DeformableEngine::rulingTriangle,"The triangle that rules the time step, as (body id, its own bound [s]).")
 		.def("array",&DeformableEngine::array,(boost::python::arg("name")),"Numpy view, without a copy, of a state array of the whole sample; rows in the order of :yref:`DeformableEngine.values` 'nodeIds' and 'triangleIds'.\n\n"
 			"nodePosition, nodeVelocity, nodeForce (nodes, 2) [m, m/s, N]; nodeMass (nodes,) [kg]; corePosition, coreVelocity, coreForce (triangles, 2); coreMass (triangles,) [kg]; "
-			"coreRotation, coreSpin (triangles,) [rad, rad/s] where cores rotate. Forces are the internal forces of the last step. Views stay valid until triangles are added; write to State rather than to a view.")
+			"coreRotation, coreSpin (triangles,) [rad, rad/s] where cores rotate. Forces are the internal forces of the last step. A view shows the arrays as long as they are the same; where triangles are added or a material or setting changes, arrays are made anew and an older view keeps what it showed. Write to State rather than to a view.")
 		.def("values",&DeformableEngine::values,(boost::python::arg("name")),"Numpy array, computed now, of a quantity of the whole sample.\n\n"
 			"nodeIds (nodes,), triangleIds (triangles,): body ids; vertices (triangles, 3): row numbers of the nodes; area, rotation (triangles,) [m², rad]; "
 			"stress, strain (triangles, 3, 4): xx, yy, zz, xy of the sub-elements in global axes [Pa, -], at the current positions; damage (triangles, 3) [-]: η/η_max; fractureEnergy (triangles,) [J/m³]; "

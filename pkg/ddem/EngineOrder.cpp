@@ -76,6 +76,14 @@ void EngineOrder::checkDrivenNodes(const Scene& scene)
 	}
 }
 
+void EngineOrder::requireOpenCell(const Scene& scene)
+{
+	if (!scene.isPeriodic) return;
+	throw std::runtime_error(
+	        "deformable triangles do not feel a periodic cell: set O.periodic = False and drive the sides of the block "
+	        "(block.drive, ddem.platens)");
+}
+
 bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 {
 	std::vector<const Engine*> now;
@@ -83,10 +91,6 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		now.push_back(e.get());
 	if (now == checked) return false;
 	requireSingleProcess(scene); // mpy adds engines where it divides a scene
-	if (scene.isPeriodic)
-		throw std::runtime_error(
-		        "deformable triangles do not feel a periodic cell: set O.periodic = False and drive the sides of the block "
-		        "(block.drive, ddem.platens)");
 	long mine = -1, resetter = -1, interactions = -1;
 	for (std::size_t i = 0; i < now.size(); i++) {
 		const std::string name = now[i]->getClassName();

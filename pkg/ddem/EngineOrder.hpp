@@ -33,6 +33,8 @@ public:
 	static bool neverLooks(const Engine& engine);
 	/// Takes the group bit out of NewtonIntegrator.mask. \throws std::runtime_error if nothing would be left.
 	static void maskIntegrators(const Scene& scene, int groupMask);
+	/// \throws std::runtime_error in a periodic cell, which triangles would not feel.
+	static void requireOpenCell(const Scene& scene);
 	/// \throws std::runtime_error if a kinematic engine drives a node whose degrees of freedom are free.
 	static void checkDrivenNodes(const Scene& scene);
 

@@ -213,6 +213,12 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			const LawOfMaterial law   = material.ownLaw();
 			auto                group = law.makeGroup();
 			group->begin              = i;
+			if (settings.flowInterval > 1 && group->stiffensInRuns())
+				reject(b,
+				       "DeformableEngine.flowInterval = " + std::to_string(settings.flowInterval)
+				               + " with an equation of state: moduli that change only every so many steps "
+				                 "shake the sample; set equationOfState = False in the material, or "
+				                 "flowInterval = 1");
 			group->flowInterval       = unsigned(settings.flowInterval);
 			group->flowClock          = known.flowClock;
 			group->constants          = { shape.thickness, material.shear() * material.rotationStiffness };

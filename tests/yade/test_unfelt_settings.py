@@ -215,3 +215,66 @@ def test_reading_one_triangle_takes_up_what_was_changed_there_only():
 	assert body.shape.stress[0][0, 0] == stretched  # nobody else is looked at, so it costs the same in a sample of any size
 	with pytest.raises(ValueError, match=f"body {far.id} .*not finite"):
 		block.stress
+
+
+# --- what changes in a run
+
+def test_a_cell_that_becomes_periodic_in_a_run_is_refused():
+	block_of()
+	start()
+	steps(3)
+	O.periodic = True
+	O.cell.setBox(1, 1, 1)
+	with pytest.raises(RuntimeError, match="periodic"):
+		O.step()
+
+
+@pytest.mark.parametrize("look", (False, True))
+def test_another_material_of_a_body_is_taken_up(look):
+	results = []
+	for soft in (False, True):
+		O.reset()
+		block = block_of()
+		soft_one = elastic("soft", bulk=3e9, shear=2.6e9)
+		start()
+		agitate(block, 1)
+		O.run(20, True)
+		if soft:
+			for i in block.triangle_ids:
+				O.bodies[i].material = soft_one
+			if look:
+				stress, before = O.bodies[block.triangle_ids[0]].shape.stress[0], results[0][0]
+				assert np.allclose(np.array(stress), 0.1 * np.array(before), rtol=1e-9, atol=1)
+		else:
+			results.append((O.bodies[block.triangle_ids[0]].shape.stress[0], None))
+		O.run(50, True)
+		results.append(block.positions.copy())
+	assert not np.array_equal(results[1], results[2])
+	# a run in which the material was there from the same moment on, by changing its parameters
+	O.reset()
+	material = elastic()
+	block = block_of(material)
+	start()
+	agitate(block, 1)
+	O.run(20, True)
+	material.bulk, material.shear = 3e9, 2.6e9
+	O.run(50, True)
+	assert np.abs(block.positions - results[2]).max() < 1e-12
+
+
+def test_flow_that_waits_is_refused_where_it_would_be_wrong():
+	from yade import ConcreteDamageMat
+	O.materials.append(ConcreteDamageMat(label="concrete"))
+	O.materials.append(ConcreteDamageMat(label="plain", equationOfState=False))
+	block_of("concrete")
+	with pytest.raises(ValueError, match="flowInterval = 3 with an equation of state.*equationOfState = False"):
+		start(flowInterval=3)
+	O.reset()
+	O.materials.append(ConcreteDamageMat(label="plain", equationOfState=False))
+	block = block_of("plain")
+	start(flowInterval=3)
+	agitate(block, 0.1)
+	steps(7)
+	O.trackEnergy = True
+	with pytest.raises(RuntimeError, match="O.trackEnergy with DeformableEngine.flowInterval = 3"):
+		steps(1)
