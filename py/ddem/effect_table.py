@@ -286,6 +286,9 @@ def _of_engine(engine, several):
 		group = Group(title, "triangle", told["count"], told["bytes"], f"in that of {name}" if ns else "", ns)
 		told = {**told, "fields": [entry for entry in engine.fields() if entry[0] in told["fields"]]}
 		_law(group, material, told, _Shapes([O.bodies[i] for i in ids[rows].tolist()]), state.of(rows))
+		if engine.flowInterval > 1 and "viscoplasticFlow" in told["effects"]:
+			waits = f"; solved every {engine.flowInterval} steps: flowInterval of {name}"
+			group["viscoplasticFlow"].why += waits
 		made.append(group)
 	return made
 

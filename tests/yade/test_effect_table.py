@@ -565,3 +565,11 @@ def test_report_and_summary_have_the_table(tmp_path):
 	for row in rows:
 		assert row["effect"] in page
 	assert "strength = 1.4e+08 Pa of ConcreteDamageMat &#39;concrete&#39;, viscoplasticFlow = True" in page
+
+
+def test_flow_that_waits_is_told():
+	concrete(equationOfState=False)
+	block()
+	start(flowInterval=4)
+	why = ddem.effects()["concrete"]["viscoplasticFlow"].why
+	assert "solved every 4 steps: flowInterval of DeformableEngine" in why
