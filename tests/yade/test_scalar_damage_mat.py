@@ -170,3 +170,14 @@ def test_parameters_out_of_bounds_are_refused(name, value, unit):
 	with pytest.raises(ValueError) as error:
 		ScalarDamageMat(label="concrete", **{name: value})
 	assert name in str(error.value) and unit in str(error.value) and "concrete" in str(error.value)
+
+
+def test_another_strength_damages_nothing_that_is_virgin():
+	material = ScalarDamageMat(label="concrete", young=30e9, poisson=0.2)
+	O.materials.append(material)
+	block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, 0.01), "concrete")
+	start(step=0.3)  # the arrays are made
+	for name, value in (("tensileStrength", 0.5 * material.tensileStrength), ("bulk", 2 * material.bulk)):
+		setattr(material, name, value)
+		O.run(3, True)
+		assert block.damage.max() == 0, name

@@ -78,7 +78,7 @@ struct ScalarDamage : LawDefaults {
 	};
 
 	template <class Number> struct State {
-		Number                largestStrain;     ///< κ [-], at first κ_0
+		Number                largestStrain;     ///< κ [-]; zero until κ_0 is passed
 		PlaneTensorOf<Number> strain;            ///< ε of the step before [-]
 		Number                damageDissipation; ///< elastic energy that damage has released [J/m³]
 	};
@@ -91,7 +91,7 @@ struct ScalarDamage : LawDefaults {
 		}
 	}
 	/// \throws std::invalid_argument for damage that is there at the start, which as a tensor is not this law's.
-	static State<double> virgin(const Prepared& law, const TriangleProperties& triangle)
+	static State<double> virgin(const Prepared&, const TriangleProperties& triangle)
 	{
 		if (norm(triangle.initialDamage) > 0)
 			throw std::invalid_argument(
@@ -99,9 +99,7 @@ struct ScalarDamage : LawDefaults {
 			        + " [-] (its norm) must be zero: this law's damage is a number, not a tensor. For weak "
 			          "places give "
 			          "triangles a fractureEnergy of their own, or a material of less tensileStrength.");
-		State<double> s {};
-		s.largestStrain = law.firstStrain;
-		return s;
+		return {};
 	}
 
 	template <class Number> struct Properties {
@@ -178,7 +176,10 @@ struct ScalarDamage : LawDefaults {
 	{
 		using std::max;
 		const PlaneTensorOf<Number> elastic = elasticStress(law.lambda, law.twoShear, strain);
-		const Number                before = s.largestStrain, now = max(before, mazarsStrain(strain));
+		const Number                before = s.largestStrain, here = mazarsStrain(strain);
+		const Number                first  = Number(law.firstStrain);
+		// nothing is remembered below κ_0, which may be another one after a change of parameters
+		const Number now = select(here > max(before, first), here, before);
 		Number                      left(1.);
 		if (any(now > law.firstStrain)) {
 			left = integrity(law, own, now);
