@@ -75,6 +75,7 @@ void DeformableEngine::postLoad(DeformableEngine&)
 
 StateStore DeformableEngine::stateToCarry(const Scene& of) const
 {
+	if (sample && virgin) return {}; // State has everything, and the shapes what else there is at the start
 	if (sample) return sample->store();
 	if (savedVersion != 0) {
 		if (savedVersion != stateVersion)
@@ -84,35 +85,13 @@ StateStore DeformableEngine::stateToCarry(const Scene& of) const
 			        + std::to_string(stateVersion) + ": load it with the plugin that saved it");
 		return StateStore::fromSaved({ savedFields, savedState });
 	}
-	// a new engine in a scene that another one has run: what only arrays hold is still with the shapes; positions are in State
-	StateStore carried;
-	for (const auto& b : *of.bodies) {
-		const auto* shape = b ? dynamic_cast<const DeformableTriangle*>(b->shape.get()) : nullptr;
-		if (!shape || !shape->system) continue;
-		const ddem::TriangleSystem& s    = *shape->system;
-		const ddem::Spins&          spin = s.motion.spin;
-		carried.lastTimeStep             = s.motion.lastTimeStep;
-		StateStore::Core& core           = carried.cores[b->getId()];
-		core.blocked                     = b->state->blockedDOFs;
-		for (std::size_t c = 0; c < 2; c++) {
-			core.position[c] = b->state->pos[Eigen::Index(c)];
-			core.velocity[c] = core.lastVelocity[c] = b->state->vel[Eigen::Index(c)];
-		}
-		core.spins = spin.size() > 0;
-		if (core.spins) {
-			core.angle = spin.angle[shape->row];
-			core.spin = core.lastSpin = b->state->angVel[2];
-		}
-		const ddem::LawGroup& group = s.groupOf(shape->row);
-		carried.keep(b->getId(), group, shape->row - group.begin);
-	}
-	return carried;
+	return storeOfFormerEngines(of, trianglesOf(of, settings(of)));
 }
 
 bool DeformableEngine::upToDate(Scene& of)
 {
 	if (stale || !sample) return false;
-	if (exposed && sample->materialsChanged()) return false;
+	if (agrees() && sample->materialsChanged(!virgin)) return false;
 	return !sample->misses(of);
 }
 
@@ -120,8 +99,11 @@ void DeformableEngine::readIfNeeded(Scene& of)
 {
 	scene = &of;
 	if (upToDate(of)) return;
-	virgin       = !sample && savedVersion == 0;
-	sample       = yade::readScene(of, settings(of), stateToCarry(of));
+	const bool       agreed = agrees();
+	const StateStore known  = stateToCarry(of);
+	virgin                  = known.cores.empty();
+	sample                  = yade::readScene(of, settings(of), known);
+	sample->shown           = agreed ? Shown::All : Shown::Constrained;
 	sample->adopt(groupMask);
 	std::vector<Real>().swap(savedState);
 	savedFields.clear();
@@ -155,7 +137,7 @@ shared_ptr<Exposure> DeformableEngine::currentOf(const shared_ptr<Exposure>& sam
 		if (engine->sample != sample) continue;
 		if (!engine->upToDate(now)) return nullptr;
 		if (Omega::instance().isRunning()) return sample;
-		if (engine->exposed) {
+		if (engine->agrees()) {
 			sample->importTriangle(now, row);
 			if (!engine->upToDate(now)) return nullptr; // its body has got another material
 		} else
@@ -173,12 +155,10 @@ Exposure& DeformableEngine::current()
 	if (!mine) throw std::runtime_error("this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
 	readIfNeeded(now);
 	if (Omega::instance().isRunning()) return *sample;
-	if (exposed) {
-		sample->importChanges(now);
-		readIfNeeded(now); // where a body has got another material
-	} else // paused between two looks
-		sample->exposeAll();
-	exposed = true;
+	if (sample->shown == Shown::All)
+		takeUpChanges(now);
+	else // paused between two looks, or in one
+		sample->finishLook(now);
 	return *sample;
 }
 
@@ -204,20 +184,15 @@ void DeformableEngine::checkStart() const
 
 void DeformableEngine::action()
 {
+	if (sample) sample->endLook();
 	// before anything is read from bodies that an engine in the wrong place may have spoilt
 	if (order.check(*scene, *this)) EngineOrder::checkDrivenNodes(*scene);
 	readIfNeeded(*scene);
-	if (exposed) {
-		sample->importChanges(*scene);
-		readIfNeeded(*scene); // where a body has got another material
+	if (sample->shown != Shown::Constrained) {
+		takeUpChanges(*scene);
 		EngineOrder::checkDrivenNodes(*scene);
 	}
 	EngineOrder::requireOpenCell(*scene);
-	if (flowInterval > 1 && scene->trackEnergy)
-		throw std::runtime_error(
-		        "O.trackEnergy with DeformableEngine.flowInterval = " + std::to_string(flowInterval)
-		        + ": the energy book does not close where flow waits; set flowInterval = 1, or "
-		          "O.trackEnergy = False");
 	if (virgin) checkStart();
 	virgin = false;
 	for (const auto* newton : order.integrators)
@@ -225,7 +200,7 @@ void DeformableEngine::action()
 	sample->importPrescribed();
 	const std::string warning = guard.check(*scene, *sample, order.stepper, order.otherStepper, inverted == "stop");
 	if (!warning.empty()) LOG_WARN(warning);
-	const bool forces = order.collectForces || scene->forces.getPermForceUsed();
+	const bool forces = forcesAdded();
 	sample->importForces(scene->forces, forces);
 
 	const Vector3r     felt = order.gravityFelt(*this);
@@ -241,13 +216,42 @@ void DeformableEngine::action()
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
-	const Onlooker who = onlooker(*scene, *this, showings, EngineOrder::neverLooks);
-	exposed            = who == Onlooker::Script;
-	if (who == Onlooker::Nobody) return sample->exposeConstrained();
-	showings.begin();
-	sample->exposeAll();
-	if (scene->forces.lastReset == scene->iter) sample->exposeReactions(scene->forces);
-	showings.end();
+	show();
+	syncs = scene->forces.syncCount;
+}
+
+void DeformableEngine::takeUpChanges(Scene& of)
+{
+	sample->importChanges(of);
+	readIfNeeded(of); // where a body has got another material
+}
+
+bool DeformableEngine::forcesAdded() const
+{
+	const ForceContainer& f = scene->forces;
+	if (f.getPermForceUsed()) return true;
+	// an engine that may add forces need not do so: adding leaves the container unsynced, or synced once more
+	return order.collectForces && !(f.lastReset == scene->iter && f.synced && f.syncCount == syncs);
+}
+
+void DeformableEngine::show()
+{
+	const Onlooker who    = onlooker(*scene, *this, showings, EngineOrder::neverLooks);
+	const bool     lags    = who == Onlooker::Python && pythonLooks::watched();
+	const bool     all     = who == Onlooker::Anybody || (who == Onlooker::Python && !lags);
+	const bool     picture = who == Onlooker::OtherThreads || (lags && showings.due());
+	if (all || picture) {
+		showings.begin();
+		sample->showPicture();
+		showings.end();
+	}
+	if (all)
+		sample->shown = Shown::All;
+	else if (lags)
+		sample->beginLook();
+	else
+		sample->exposeConstrained();
+	if (who != Onlooker::Nobody && scene->forces.lastReset == scene->iter) sample->exposeReactions(scene->forces);
 }
 
 void DeformableEngine::stopAtNotFinite()
@@ -282,6 +286,7 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 void DeformableEngine::preSave(DeformableEngine&)
 {
 	if (!sample) return; // nothing yet, or loaded and not run: then savedState still holds the state
+	exposed          = agrees();
 	savedVersion     = stateVersion;
 	const auto saved = sample->store().saved();
 	savedState       = saved.numbers;
@@ -305,10 +310,7 @@ bool DeformableEngine::timeStepUnchecked(Scene& of) { return !upToDate(of) || gu
 Real DeformableEngine::stableStep(Scene& of, Real enough)
 {
 	readIfNeeded(of);
-	if (exposed) {
-		sample->importChanges(of);
-		readIfNeeded(of); // where a body has got another material
-	}
+	if (sample->shown != Shown::Constrained) takeUpChanges(of);
 	return sample->timeStep(enough).step;
 }
 

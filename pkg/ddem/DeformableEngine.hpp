@@ -49,7 +49,8 @@ public:
 		"Computes internal forces of all :yref:`DeformableTriangle` bodies and moves their cores and nodes by leapfrog, with the scheme of :yref:`NewtonIntegrator` [Zubelewicz2018]_.\n\n"
 		"It keeps their state in arrays of its own and takes its bodies out of NewtonIntegrator (by :yref:`NewtonIntegrator.mask`), which costs five to ten times as much. "
 		"To the user bodies stay bodies: blockedDOFs, prescribed vel, forces that other engines add and changes made from Python are honoured; "
-		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind).\n\n"
+		":yref:`State` is written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind). "
+		"For the commands of :yref:`PyRunner` it is written back body by body, when Python reads it, so that a command costs what it looks at; functions that may read any body (utils.kineticEnergy, O.save …) have all written back.\n\n"
 		"Place it after the engines that add forces and after :yref:`ForceResetter`. Results are the same, bit by bit, for any number of threads.\n\n"
 		"Errors: a time step above :yref:`criticalTimeStep<DeformableEngine.criticalTimeStep>`, engines in the wrong order, unusable triangles and a state that is not finite stop the run with the body, its place and the way out.\n\n"
 		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is possible, erasing is not). While a run goes on in the background, State seen from other threads is up to 0.2 s old (older in large samples, so that showing it takes a twentieth of the time at most); after O.pause(), reading anything from the engine brings it up to date.",
@@ -62,8 +63,7 @@ public:
 			"Where O.engines has several DeformableEngine each needs a bit of its own."))
 		((int,flowInterval,1,Attr::triggerPostLoad,"Steps from one solution of viscoplastic flow to the next; in between undamaged triangles are elastic with the plastic strain they have, and "
 			"damaged ones flow in every step. Cheaper, and for monotone strain off by no more than the stress that the strain of so many steps makes (E m Δε); vibrations faster than the interval flow less. "
-			"Refused above 1 with an equation of state (its moduli would change in jumps and shake the "
-			"sample) and while O.trackEnergy is on."))
+			"Refused above 1 with an equation of state, whose moduli would change in jumps and shake the sample."))
 		((std::string,inverted,"stop",Attr::triggerPostLoad,"What to do when a triangle is inside out, that is, its vertices have changed their sense: 'stop' the run with the triangle, its place and the ratio of its areas, or 'warn' once. "
 			"Looked at every 50 steps (10 with an equation of state). A sample that is crushed beyond its bearing capacity may be let go on."))
 		((std::vector<Body::id_t>,ids,,Attr::triggerPostLoad,"Ids of the triangles that this engine moves, with their nodes. Empty: those whose group mask has the engine's bit, "
@@ -96,6 +96,7 @@ private:
 	TimeStepGuard                         guard;
 	bool                                  stale   = true; ///< settings changed since the arrays were built
 	bool                                  virgin  = false; ///< the arrays were built from State alone, and no step was made
+	unsigned long                         syncs   = 0;     ///< of O.forces, as many as there were after the last step
 	Showings                              showings;
 	int                                   ids_[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
 
@@ -103,6 +104,10 @@ private:
 	SampleSettings          settings(const Scene& of) const;
 	StateStore              stateToCarry(const Scene&) const;
 	bool                    upToDate(Scene& of);
+	bool                    agrees() const { return sample ? sample->shown == Shown::All : exposed; }
+	void                    takeUpChanges(Scene& of);
+	bool                    forcesAdded() const;
+	void                    show();
 	void                    checkStart() const;
 	void                    bookEnergy(const ddem::StepEnergy&);
 	[[noreturn]] void       stopAtNotFinite();

@@ -22,7 +22,17 @@ public:
 	std::size_t                      row = 0;
 
 	/// What it says beside its nodes.
-	std::array<Real, 3> values() const { return { thickness, fractureEnergy, bandFactor }; }
+	struct Values {
+		Real     thickness, fractureEnergy, bandFactor;
+		Matrix3r initialDamage;
+
+		bool operator==(const Values& o) const
+		{
+			return thickness == o.thickness && fractureEnergy == o.fractureEnergy && bandFactor == o.bandFactor
+			        && initialDamage == o.initialDamage;
+		}
+	};
+	Values values() const { return { thickness, fractureEnergy, bandFactor, initialDamage }; }
 	/// Counts what was said by all triangles, so that an engine need not ask each.
 	static std::atomic<unsigned long> changes;
 	void                              postLoad(DeformableTriangle&) { changes++; }
@@ -45,7 +55,7 @@ public:
 		((Real,thickness,1,Attr::triggerPostLoad,"Thickness [m] of the plane-strain slice."))
 		((Real,fractureEnergy,-1,Attr::triggerPostLoad,"This triangle's own fracture energy :math:`G_f`, in the unit of its material's (J/m³ for :yref:`ConcreteDamageMat`, J/m² for :yref:`ScalarDamageMat`); negative: the material's."))
 		((Real,bandFactor,1,Attr::triggerPostLoad,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
-		((Matrix3r,initialDamage,Matrix3r::Zero(),,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
+		((Matrix3r,initialDamage,Matrix3r::Zero(),Attr::triggerPostLoad,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
 		createIndex();,
 		.add_property("stress",&DeformableTriangle::stress,"Stress [Pa] of the three sub-elements, list of Matrix3.")
 		.add_property("strain",&DeformableTriangle::strain,"Strain [-] of the three sub-elements, list of Matrix3.")

@@ -38,28 +38,30 @@ namespace {
 
 } // namespace
 
-StateStore Exposure::store() const
+StateStore storeOf(const ddem::TriangleSystem& s, const SampleIds& ids)
 {
-	StateStore carried;
-	const ddem::TriangleSystem&      s     = *system;
-	const ddem::Motion::Book         book  = s.motion.book();
-	carried.lastTimeStep                   = s.motion.lastTimeStep;
-	carried.pendingWork                    = { book.gravityWork, book.externalWork, book.dampingLoss };
-	const auto point                       = [](StateStore::Point& to, const ddem::Points& from, const std::vector<double>& last, unsigned blocked, std::size_t i) {
-                to.blocked = blocked;
-                for (std::size_t c = 0; c < 2; c++) {
-                        to.position[c]     = from.position[2 * i + c];
-                        to.velocity[c]     = from.velocity[2 * i + c];
-                        to.force[c]        = from.force[2 * i + c];
-                        to.lastVelocity[c] = last[2 * i + c];
-                }
+	StateStore               carried;
+	const ddem::Motion::Book book = s.motion.book();
+	carried.lastTimeStep          = s.motion.lastTimeStep;
+	carried.pendingWork           = { book.gravityWork, book.externalWork, book.dampingLoss };
+	carried.flowClock             = s.group.front()->flowClock; // all groups take the same steps
+	const auto point = [](StateStore::Point& to, const ddem::Points& from, const std::vector<double>& last, unsigned blocked,
+	                      std::size_t i) {
+		to.blocked = blocked;
+		for (std::size_t c = 0; c < 2; c++) {
+			to.position[c]     = from.position[2 * i + c];
+			to.velocity[c]     = from.velocity[2 * i + c];
+			to.force[c]        = from.force[2 * i + c];
+			to.lastVelocity[c] = last[2 * i + c];
+		}
 	};
-	carried.flowClock                      = s.group.front()->flowClock; // all groups take the same steps
-	for (std::size_t i = 0; i < nodes.size(); i++)
-		point(carried.nodes[nodeId[i]], s.motion.node, book.nodeVelocity, nodeBlocked[i], i);
-	for (std::size_t i = 0; i < cores.size(); i++) {
-		StateStore::Core& core = carried.cores[coreId[i]];
-		point(core, s.motion.core, book.coreVelocity, coreBlocked[i], i);
+	for (std::size_t i = 0; i < ids.node.size(); i++)
+		if (ids.node[i] >= 0)
+			point(carried.nodes[ids.node[i]], s.motion.node, book.nodeVelocity, ids.nodeBlocked[i], i);
+	for (std::size_t i = 0; i < ids.core.size(); i++) {
+		if (ids.core[i] < 0) continue;
+		StateStore::Core& core = carried.cores[ids.core[i]];
+		point(core, s.motion.core, book.coreVelocity, ids.coreBlocked[i], i);
 		core.spins = s.motion.spin.size() > 0;
 		if (core.spins) {
 			core.angle    = s.motion.spin.angle[i];
@@ -68,8 +70,40 @@ StateStore Exposure::store() const
 			core.lastSpin = book.spinVelocity[i];
 		}
 		const ddem::LawGroup& group = s.groupOf(i);
-		carried.keep(coreId[i], group, i - group.begin);
+		carried.keep(ids.core[i], group, i - group.begin);
 	}
+	return carried;
+}
+
+StateStore Exposure::store() const { return storeOf(*system, { nodeId, coreId, nodeBlocked, coreBlocked }); }
+
+StateStore storeOfFormerEngines(const Scene& scene, const std::vector<shared_ptr<Body>>& triangles)
+{
+	std::map<const ddem::TriangleSystem*, SampleIds> samples;
+	for (const auto& b : triangles) {
+		const DeformableTriangle& shape = triangleShape(*b);
+		if (!shape.system) continue;
+		const ddem::TriangleSystem& s   = *shape.system;
+		SampleIds&                  ids = samples[&s];
+		if (ids.core.empty()) {
+			ids.core.assign(s.motion.core.size(), -1);
+			ids.node.assign(s.motion.node.size(), -1);
+			ids.coreBlocked.resize(ids.core.size());
+			ids.nodeBlocked.resize(ids.node.size());
+		}
+		ids.core[shape.row]        = b->getId();
+		ids.coreBlocked[shape.row] = b->state->blockedDOFs;
+		for (std::size_t e = 0; e < 3; e++) {
+			const Body::id_t id   = shape.nodes[Eigen::Index(e)];
+			const auto       node = std::size_t(s.topology.vertex[e][shape.row]);
+			if (!scene.bodies->exists(id)) continue;
+			ids.node[node]        = id;
+			ids.nodeBlocked[node] = (*scene.bodies)[id]->state->blockedDOFs;
+		}
+	}
+	StateStore carried;
+	for (const auto& sample : samples)
+		carried.take(storeOf(*sample.first, sample.second));
 	return carried;
 }
 
@@ -98,21 +132,31 @@ void Exposure::countBodies(const Scene& scene)
 bool Exposure::misses(const Scene& scene)
 {
 	if (scene.bodies->size() == sceneBodies) return false;
+	requireComplete(scene); // one erased and one added leave their number as it was
 	if (countDeformable(scene) != std::make_pair(sceneTriangles, sceneNodes)) return true;
 	sceneBodies = scene.bodies->size(); // bodies of other kinds have come
 	return false;
 }
 
-bool Exposure::materialsChanged()
+bool Exposure::materialsChanged(bool started)
 {
 	for (const auto& known : materials)
 		if (static_cast<const DeformableElastMat&>(*known.first).ownLaw().values != known.second) return true;
 	if (replaced) return true;
 	if (shapeChanges == DeformableTriangle::changes) return false;
-	for (std::size_t i = 0; i < cores.size(); i++)
-		if (triangleShape(*cores[i]).values() != shapeValues[i]) return true;
-	shapeChanges = DeformableTriangle::changes;
-	return false;
+	bool changed = false;
+	for (std::size_t i = 0; i < cores.size(); i++) {
+		const auto now = triangleShape(*cores[i]).values();
+		if (now == shapeValues[i]) continue;
+		changed = true;
+		if (started && now.initialDamage != shapeValues[i].initialDamage)
+			throw std::invalid_argument(
+			        placeOf(*cores[i])
+			        + ": DeformableTriangle.initialDamage is the damage [-] at the start, and the run has begun; give it "
+			          "before the first step (a material with less strength weakens a triangle during a run)");
+	}
+	if (!changed) shapeChanges = DeformableTriangle::changes;
+	return changed;
 }
 
 void Exposure::adopt(int groupMask)
@@ -150,11 +194,16 @@ void Exposure::applyBlockedDegreesOfFreedom()
 	for (std::size_t i = 0; i < system->motion.spin.size(); i++)
 		system->motion.spin.inverseInertia[i] = inverse(system->motion.spin.inertia[i], coreBlocked[i] & State::DOF_RZ);
 	system->motion.collectConstraints();
+	isConstrained.assign(nodes.size() + cores.size(), 0);
+	for (const auto i : constrainedNodes)
+		isConstrained[i] = 1;
+	for (const auto i : constrainedCores)
+		isConstrained[nodes.size() + i] = 1;
 }
 
 namespace {
 
-	void expose(const Body& b, const ddem::Points& points, std::size_t i)
+	void exposePoint(const Body& b, const ddem::Points& points, std::size_t i)
 	{
 		State& s = *b.state;
 		s.pos[0] = points.position[2 * i];
@@ -199,27 +248,87 @@ namespace {
 
 } // namespace
 
-void Exposure::exposeAll()
+void Exposure::expose(std::size_t row) const
 {
-	const auto nNodes = std::ptrdiff_t(nodes.size()), nCores = std::ptrdiff_t(cores.size());
-#pragma omp parallel for schedule(static)
-	for (std::ptrdiff_t i = 0; i < nNodes; i++)
-		expose(*nodes[std::size_t(i)], system->motion.node, std::size_t(i));
-#pragma omp parallel for schedule(static)
-	for (std::ptrdiff_t i = 0; i < nCores; i++) {
-		expose(*cores[std::size_t(i)], system->motion.core, std::size_t(i));
-		exposeRotation(*cores[std::size_t(i)], *system, std::size_t(i));
-	}
+	if (row < nodes.size()) return exposePoint(*nodes[row], system->motion.node, row);
+	const std::size_t i = row - nodes.size();
+	exposePoint(*cores[i], system->motion.core, i);
+	exposeRotation(*cores[i], *system, i);
 }
 
-void Exposure::exposeConstrained() const
+void Exposure::showPicture() const
+{
+	const auto rows = std::ptrdiff_t(nodes.size() + cores.size());
+#pragma omp parallel for schedule(static)
+	for (std::ptrdiff_t row = 0; row < rows; row++)
+		expose(std::size_t(row));
+}
+
+void Exposure::exposeAll()
+{
+	showPicture();
+	shown = Shown::All;
+}
+
+void Exposure::exposeConstrained()
 {
 	for (const auto i : constrainedNodes)
-		expose(*nodes[i], system->motion.node, i);
-	for (const auto i : constrainedCores) {
-		expose(*cores[i], system->motion.core, i);
-		exposeRotation(*cores[i], *system, i);
+		expose(i);
+	for (const auto i : constrainedCores)
+		expose(nodes.size() + i);
+	shown = Shown::Constrained;
+}
+
+// ---- looks of Python -------------------------------------------------------------------------------------------------
+
+void Exposure::beginLook()
+{
+	exposeConstrained();
+	shown = Shown::Touched;
+	touched.clear();
+	look++;
+	pythonLooks::begin(*this);
+}
+
+void Exposure::show(const State& state)
+{
+	if (shown != Shown::Touched) return;
+	if (rowOfState.empty()) {
+		rowOfState.reserve(nodes.size() + cores.size());
+		for (std::size_t i = 0; i < nodes.size(); i++)
+			rowOfState.emplace(nodes[i]->state.get(), i);
+		for (std::size_t i = 0; i < cores.size(); i++)
+			rowOfState.emplace(cores[i]->state.get(), nodes.size() + i);
+		lookOfRow.resize(nodes.size() + cores.size());
 	}
+	const auto found = rowOfState.find(&state);
+	if (found == rowOfState.end() || wasTouched(found->second)) return;
+	if (!isConstrained[found->second]) expose(found->second);
+	lookOfRow[found->second] = look;
+	touched.push_back(found->second);
+}
+
+void Exposure::exposeUntouched() const
+{
+	const auto rows = std::ptrdiff_t(nodes.size() + cores.size());
+#pragma omp parallel for schedule(static)
+	for (std::ptrdiff_t row = 0; row < rows; row++)
+		if (!isConstrained[std::size_t(row)] && !wasTouched(std::size_t(row))) expose(std::size_t(row));
+}
+
+void Exposure::showAll()
+{
+	if (shown != Shown::Touched) return;
+	exposeUntouched();
+	rowOfState.clear(); // a body may get another State now
+	shown = Shown::All;
+}
+
+void Exposure::finishLook(const Scene& scene)
+{
+	endLook();
+	if (shown == Shown::Touched) importChanges(scene);
+	exposeAll();
 }
 
 namespace {
@@ -235,6 +344,14 @@ namespace {
 	}
 
 } // namespace
+
+void Exposure::requireComplete(const Scene& scene) const
+{
+	for (std::size_t i = 0; i < nodes.size(); i++)
+		requireInScene(scene, *nodes[i], nodeId[i]);
+	for (std::size_t i = 0; i < cores.size(); i++)
+		requireInScene(scene, *cores[i], coreId[i]);
+}
 
 void Exposure::importNode(const Scene& scene, std::size_t i, bool driven, bool& blockedChanged)
 {
@@ -266,13 +383,21 @@ void Exposure::importCore(const Scene& scene, std::size_t i, bool driven, bool& 
 
 void Exposure::importChanges(const Scene& scene)
 {
+	if (shown == Shown::Constrained || (shown == Shown::Touched && touched.empty())) return;
 	bool       blockedChanged = false;
 	const auto driven         = drivenBodies(scene);
 	const auto isDriven       = [&](Body::id_t id) { return std::size_t(id) < driven.size() && driven[std::size_t(id)]; };
-	for (std::size_t i = 0; i < nodes.size(); i++)
-		importNode(scene, i, isDriven(nodeId[i]), blockedChanged);
-	for (std::size_t i = 0; i < cores.size(); i++)
-		importCore(scene, i, isDriven(coreId[i]), blockedChanged);
+	const auto import         = [&](std::size_t row) {
+                if (row < nodes.size()) return importNode(scene, row, isDriven(nodeId[row]), blockedChanged);
+                const std::size_t i = row - nodes.size();
+                importCore(scene, i, isDriven(coreId[i]), blockedChanged);
+	};
+	if (shown == Shown::Touched)
+		for (const std::size_t row : touched)
+			import(row);
+	else
+		for (std::size_t row = 0; row < nodes.size() + cores.size(); row++)
+			import(row);
 	if (blockedChanged) applyBlockedDegreesOfFreedom();
 }
 
@@ -322,19 +447,19 @@ void Exposure::importForces(ForceContainer& forces, bool wanted)
 		return;
 	}
 	forces.sync();
-	const auto take = [&forces](const std::vector<shared_ptr<Body>>& bodies, ddem::Points& points) {
-		points.external.resize(2 * bodies.size());
-		for (std::size_t i = 0; i < bodies.size(); i++) {
-			const Vector3r& f          = forces.getForce(bodies[i]->getId());
+	const auto take = [&forces](const std::vector<Body::id_t>& ids, ddem::Points& points) {
+		points.external.resize(2 * ids.size());
+		for (std::size_t i = 0; i < ids.size(); i++) {
+			const Vector3r& f          = forces.getForce(ids[i]);
 			points.external[2 * i]     = f[0];
 			points.external[2 * i + 1] = f[1];
 		}
 	};
-	take(nodes, system->motion.node);
-	take(cores, system->motion.core);
+	take(nodeId, system->motion.node);
+	take(coreId, system->motion.core);
 	system->motion.spin.external.resize(system->motion.spin.size());
 	for (std::size_t i = 0; i < system->motion.spin.size(); i++)
-		system->motion.spin.external[i] = forces.getTorque(cores[i]->getId())[2];
+		system->motion.spin.external[i] = forces.getTorque(coreId[i])[2];
 }
 
 void Exposure::exposeReactions(ForceContainer& forces) const

@@ -4,6 +4,7 @@
 
 #include <pkg/ddem/DeformableElastMat.hpp>
 #include <pkg/ddem/DeformableTriangle.hpp>
+#include <pkg/ddem/PythonLooks.hpp>
 #include <pkg/ddem/StateStore.hpp>
 #include <pkg/ddem/kernel/triangles/SystemStableStep.hpp>
 
@@ -13,6 +14,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -20,14 +22,33 @@ namespace yade {
 
 struct SampleSettings;
 
+/// Which bodies are the rows of a system, -1 where none is, and their blocked degrees of freedom.
+struct SampleIds {
+	std::vector<Body::id_t> node, core;
+	std::vector<unsigned>   nodeBlocked, coreBlocked;
+};
+/// The state of a system, by the ids of its bodies.
+StateStore storeOf(const ddem::TriangleSystem& system, const SampleIds& ids);
+/// That of triangles which an engine has moved that is gone: what only arrays hold is still with the shapes.
+StateStore storeOfFormerEngines(const Scene& scene, const std::vector<shared_ptr<Body>>& triangles);
+
 /// "body 12 at (0.1, 0.2) m", its reference position.
 std::string placeOf(const Body& b);
 
-class Exposure : public boost::enable_shared_from_this<Exposure> {
+/// How much of State agrees with the arrays, and is taken up from it before the next step.
+enum class Shown {
+	Constrained, ///< bodies with blocked degrees of freedom only, whose velocities are read
+	Touched,     ///< and what Python has touched, see LaggingState
+	All
+};
+
+class Exposure : public boost::enable_shared_from_this<Exposure>, private LaggingState {
 public:
+	~Exposure() override { pythonLooks::end(*this); }
+
 	shared_ptr<ddem::TriangleSystem> system;
 	std::vector<shared_ptr<Body>>    nodes, cores; ///< by row
-	bool                             exposed = true; ///< whether State agrees with the arrays
+	Shown                            shown = Shown::All;
 	std::set<std::string>            forgotten;      ///< fields of the state before that no law here has
 
 	/// The state of all bodies, to be carried into other arrays.
@@ -35,16 +56,26 @@ public:
 
 	/// Whether the scene has other deformable bodies than when it was read (cheap unless bodies were added).
 	bool misses(const Scene& scene);
-	/// Whether a material or what a triangle's shape says has been changed since the arrays were built.
-	bool materialsChanged();
+	/** Whether a material or what a triangle's shape says has been changed since the arrays were built.
+	 * \param started whether steps have been made with them: then initialDamage can be changed no more
+	 * \throws std::invalid_argument if it was */
+	bool materialsChanged(bool started);
 
 	/// Gives the bodies their masses and the group bit, and links shapes to their rows.
 	void adopt(int groupMask);
 
-	/// Writes positions, velocities and rotations into State; of all bodies, or only of those with blocked degrees of freedom.
+	/// Writes positions, velocities and rotations into State, of all bodies.
 	void exposeAll();
-	void exposeConstrained() const;
-	/** Takes up what was changed in State since exposeAll.
+	/// Lets State be as it is, but for bodies with blocked degrees of freedom.
+	void exposeConstrained();
+	/// The same until Python touches it. Call endLook() before the arrays change.
+	void beginLook();
+	void endLook() { pythonLooks::end(*this); }
+	/// Writes State as it is now for other threads, who change nothing.
+	void showPicture() const;
+	/// After a look that has ended otherwise than by a step: State of all, with what was changed meanwhile taken up.
+	void finishLook(const Scene& scene);
+	/** Takes up what was changed in State, as far as it has been shown.
 	 * \throws std::invalid_argument for values that are not finite and for bodies erased from the scene. */
 	void importChanges(const Scene& scene);
 	/// The same for one triangle and its nodes: costs the same in a sample of any size.
@@ -72,7 +103,7 @@ private:
 	using Fingerprint = std::pair<shared_ptr<Material>, std::vector<double>>;
 	std::vector<Fingerprint>         materials;           ///< parameters as they were when the arrays were built
 	std::vector<std::size_t>         coreMaterial;        ///< place in materials of every triangle's
-	std::vector<std::array<Real, 3>> shapeValues;         ///< what every triangle's shape says
+	std::vector<DeformableTriangle::Values> shapeValues;  ///< what every triangle's shape says
 	unsigned long                    shapeChanges = 0;    ///< DeformableTriangle::changes when they were last compared
 	std::vector<Body::id_t>          nodeId, coreId;      ///< as read; erasing a body takes its id away
 	std::vector<unsigned>            nodeBlocked, coreBlocked; ///< State::blockedDOFs as last taken up
@@ -83,9 +114,22 @@ private:
 	std::size_t                      sceneTriangles = 0, sceneNodes = 0;
 	bool                             replaced    = false; ///< a body got another material
 
+	// a look: rows are those of nodes, then those of cores
+	std::unordered_map<const State*, std::size_t> rowOfState; ///< made when Python first touches State in a look
+	std::vector<unsigned>                         lookOfRow;  ///< the last look in which a row was touched
+	std::vector<std::size_t>                      touched;    ///< rows, in this look
+	std::vector<char> isConstrained; ///< by row: State has been written, and kinematic engines may have acted since
+	unsigned                                      look = 0;
+
+	void show(const State& state) override;
+	void showAll() override;
+	bool wasTouched(std::size_t row) const { return row < lookOfRow.size() && lookOfRow[row] == look; }
+	void expose(std::size_t row) const;
+	void exposeUntouched() const;
 
 	void countBodies(const Scene& scene);
 	void applyBlockedDegreesOfFreedom();
+	void requireComplete(const Scene& scene) const;
 	void importNode(const Scene&, std::size_t row, bool driven, bool& blockedChanged);
 	void importCore(const Scene&, std::size_t row, bool driven, bool& blockedChanged);
 };

@@ -1,6 +1,10 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/Onlookers.hpp>
 
+#include <pkg/common/PyRunner.hpp>
+
+#include <typeinfo>
+
 namespace yade {
 
 namespace {
@@ -30,10 +34,11 @@ Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showin
 {
 	const long next = scene.iter + 1;
 	const Real then = scene.time + scene.dt;
-	if (!Omega::instance().isRunning()) return Onlooker::Script; // O.step, or a pause was asked for
-	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return Onlooker::Script;
-	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return Onlooker::Script;
+	if (!Omega::instance().isRunning()) return Onlooker::Anybody; // O.step, or a pause was asked for
+	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return Onlooker::Anybody;
+	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return Onlooker::Anybody;
 	bool before = true; // engines before this one act next in the next step
+	bool python = false;
 	for (const auto& e : scene.engines) {
 		if (e.get() == &self) {
 			before = false;
@@ -41,8 +46,11 @@ Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showin
 		}
 		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
-		if (!periodic || isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) return Onlooker::Script;
+		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) continue;
+		if (typeid(*e) != typeid(PyRunner)) return Onlooker::Anybody;
+		python = true;
 	}
+	if (python) return Onlooker::Python;
 	return showings.due() ? Onlooker::OtherThreads : Onlooker::Nobody;
 }
 

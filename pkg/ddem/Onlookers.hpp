@@ -12,7 +12,8 @@ namespace yade {
 enum class Onlooker {
 	Nobody,
 	OtherThreads, ///< a window, or a shell beside a run: they see a picture now and then, and change nothing
-	Script        ///< the end of a run, or an engine that may read and change bodies
+	Python,       ///< commands of PyRunner only
+	Anybody       ///< the end of a run, or an engine that may read and change bodies
 };
 
 /// When State was last shown to other threads, and what that took: a picture may cost a small part of the time only.

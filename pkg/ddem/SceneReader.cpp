@@ -73,40 +73,6 @@ namespace {
 		return found == map.end() ? nullptr : &found->second;
 	}
 
-	/// The triangles that an engine takes, in the order of their ids.
-	std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettings& settings)
-	{
-		const std::set<Body::id_t> mine(settings.ids.begin(), settings.ids.end()), others(settings.otherIds.begin(), settings.otherIds.end());
-		std::vector<shared_ptr<Body>> found;
-		for (const auto& b : *scene.bodies) {
-			if (!b || !dynamic_cast<const DeformableTriangle*>(b->shape.get())) continue;
-			if (!mine.empty()) {
-				if (mine.count(b->getId())) found.push_back(b);
-				continue;
-			}
-			if (others.count(b->getId())) continue;
-			const bool ours = b->groupMask & settings.groupMask;
-			if (!ours && (b->groupMask & settings.otherBits)) continue;
-			if (!ours && settings.shared)
-				reject(*b,
-				       "O.engines has several DeformableEngine and nothing says which moves it: give the engines' ids "
-				       "(DeformableEngine.ids = block.triangle_ids), or the bodies the bit of one engine's groupMask");
-			found.push_back(b);
-		}
-		for (const Body::id_t id : mine)
-			if (!scene.bodies->exists(id) || !dynamic_cast<const DeformableTriangle*>((*scene.bodies)[id]->shape.get()))
-				throw std::invalid_argument(
-				        "DeformableEngine.ids: body " + std::to_string(id)
-				        + " is not a DeformableTriangle of the scene; give ids of triangles (block.triangle_ids)");
-		if (found.empty())
-			throw std::invalid_argument(
-			        settings.otherBits
-			                ? "DeformableEngine: the other engines in O.engines take all triangles; append a mesh for this one, give its ids, or "
-			                  "remove it"
-			                : "DeformableEngine: the scene has no DeformableTriangle; append a mesh first (ddem.append), or remove the engine");
-		return found;
-	}
-
 	/// Sorts triangles so that those of a kind (material, thickness) stand together; kinds in the order in which they come.
 	void sortByKind(std::vector<shared_ptr<Body>>& triangles)
 	{
@@ -122,6 +88,39 @@ namespace {
 	}
 
 } // namespace
+
+std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettings& settings)
+{
+	const std::set<Body::id_t> mine(settings.ids.begin(), settings.ids.end()), others(settings.otherIds.begin(), settings.otherIds.end());
+	std::vector<shared_ptr<Body>> found;
+	for (const auto& b : *scene.bodies) {
+		if (!b || !dynamic_cast<const DeformableTriangle*>(b->shape.get())) continue;
+		if (!mine.empty()) {
+			if (mine.count(b->getId())) found.push_back(b);
+			continue;
+		}
+		if (others.count(b->getId())) continue;
+		const bool ours = b->groupMask & settings.groupMask;
+		if (!ours && (b->groupMask & settings.otherBits)) continue;
+		if (!ours && settings.shared)
+			reject(*b,
+			       "O.engines has several DeformableEngine and nothing says which moves it: give the engines' ids "
+			       "(DeformableEngine.ids = block.triangle_ids), or the bodies the bit of one engine's groupMask");
+		found.push_back(b);
+	}
+	for (const Body::id_t id : mine)
+		if (!scene.bodies->exists(id) || !dynamic_cast<const DeformableTriangle*>((*scene.bodies)[id]->shape.get()))
+			throw std::invalid_argument(
+			        "DeformableEngine.ids: body " + std::to_string(id)
+			        + " is not a DeformableTriangle of the scene; give ids of triangles (block.triangle_ids)");
+	if (found.empty())
+		throw std::invalid_argument(
+		        settings.otherBits
+		                ? "DeformableEngine: the other engines in O.engines take all triangles; append a mesh for this one, give its ids, or "
+		                  "remove it"
+		                : "DeformableEngine: the scene has no DeformableTriangle; append a mesh first (ddem.append), or remove the engine");
+	return found;
+}
 
 shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& settings, const StateStore& known)
 {
@@ -275,6 +274,14 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 	made->forgotten = forgotten;
 	made->applyBlockedDegreesOfFreedom();
 	s.build();
+	for (std::size_t i = 0; i < n; i++) { // where a law, an effect or the energy book begins in the midst of a run
+		if (!knownIn(known.cores, made->coreId[i])) continue;
+		ddem::LawGroup& group   = s.groupOf(i);
+		const auto      missing = known.missing(made->coreId[i], group);
+		if (!missing.empty()) group.beginAt(i - group.begin, missing, s.strain(i));
+	}
+	for (auto& group : s.group)
+		group->fillUp();
 
 	ddem::Motion::Book book = m.book();
 	book.gravityWork        = known.pendingWork[0];

@@ -20,6 +20,9 @@ struct SampleSettings {
 	int                     flowInterval = 1;    ///< see ddem::LawGroup::flowInterval
 };
 
+/// The triangles that an engine takes, in the order of their ids. \throws std::invalid_argument as readScene does.
+std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettings& settings);
+
 /** Builds arrays from the deformable bodies that an engine takes. Triangles of a kind (material, thickness) stand together, in the order
  * of their ids; nodes in the order of theirs. Bodies known from `known` keep that state; the others start from State. Nothing is changed
  * in the scene before all bodies have been checked.

@@ -89,6 +89,38 @@ void StateStore::keep(Body::id_t id, const ddem::LawGroup& group, std::size_t tr
 		}
 }
 
+std::set<std::string> StateStore::missing(Body::id_t id, const ddem::LawGroup& group) const
+{
+	std::set<std::string> names;
+	for (const ddem::StateField& field : group.fields())
+		names.insert(field.name);
+	const auto found = memories.find(id);
+	if (found == memories.end()) return names;
+	for (const std::string& name : kinds[found->second.fields].names)
+		names.erase(name);
+	return names;
+}
+
+void StateStore::take(StateStore&& other)
+{
+	if (cores.empty()) {
+		*this = std::move(other);
+		return;
+	}
+	nodes.merge(other.nodes);
+	cores.merge(other.cores);
+	for (std::size_t i = 0; i < pendingWork.size(); i++)
+		pendingWork[i] += other.pendingWork[i];
+	for (auto& [id, memory] : other.memories) {
+		const Fields& fields = other.kinds[memory.fields];
+		const auto    same   = [&](const Fields& f) { return f.names == fields.names && f.components == fields.components; };
+		const auto    kind   = std::find_if(kinds.begin(), kinds.end(), same);
+		memory.fields        = std::size_t(kind - kinds.begin());
+		if (kind == kinds.end()) kinds.push_back(fields);
+		memories[id] = std::move(memory);
+	}
+}
+
 std::set<std::string> StateStore::give(Body::id_t id, ddem::LawGroup& group, std::size_t triangle) const
 {
 	std::set<std::string> unknown;

@@ -38,6 +38,12 @@ public:
 	/// Gives it to a triangle of a group: fields of the same name and kind. \returns the names of those that the group does not know.
 	std::set<std::string> give(Body::id_t id, ddem::LawGroup& group, std::size_t triangle) const;
 
+	/// Names of the fields that a triangle's group has and that are not known of it.
+	std::set<std::string> missing(Body::id_t id, const ddem::LawGroup& group) const;
+
+	/// Takes the state of other bodies; works that wait for the energy book add up.
+	void take(StateStore&& other);
+
 	/// Whether any law remembers anything.
 	bool hasMemories() const { return !memories.empty(); }
 

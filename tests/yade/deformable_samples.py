@@ -1,5 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """Samples of deformable triangles and measures of their motion, shared by the tests."""
+import sys
+
 import numpy as np
 
 from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, ForceResetter, O, Vector3i, ddem
@@ -49,6 +51,12 @@ def steps(count):
 	"""O.step() so many times: unlike O.run it has no thread to wait for (40 ms), and errors come as they were raised."""
 	for _ in range(count):
 		O.step()
+
+
+def in_main(name, function):
+	"""Make a function callable from a PyRunner's command."""
+	setattr(sys.modules["__main__"], name, function)
+	return name + "()"
 
 
 def bodies(ids):

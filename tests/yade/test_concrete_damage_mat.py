@@ -10,7 +10,7 @@ from scipy.stats import norm
 from yade import ConcreteDamageMat, Matrix3, O, Vector3, ddem
 from yade.ddem.materialpoint import EFFECTS, MaterialPoint, concrete
 
-from deformable_samples import append_bodies, bodies, elastic, start, steps
+from deformable_samples import agitate, append_bodies, bodies, elastic, skewed_mesh, start, steps
 
 # --- one triangle and one material point
 
@@ -130,6 +130,36 @@ def test_without_damage_flow_goes_on_without_loss():
 	_, _, grown = homogeneous(5, 0, 0)
 	assert not damage.any() and plastic[0] > 1e-3
 	assert grown[0] > 0.1
+
+
+@pytest.mark.parametrize("book", ("before", "with it", "never"))
+@pytest.mark.parametrize("off", (("viscoplasticFlow", "damage"), ("viscoplasticFlow", ), ("damage", ), "elastic"))
+def test_an_effect_switched_on_in_a_run_begins_at_the_strain_of_then(off, book):
+	"""Flow is a matter of rates: the strain that had come before it must not come in one step, nor into the book."""
+	names = () if off == "elastic" else off
+	concrete_mat = ConcreteDamageMat(label="concrete", equationOfState=False, **{name: False for name in names})
+	O.materials.append(concrete_mat)
+	elastic(bulk=concrete_mat.bulk, shear=concrete_mat.shear, density=concrete_mat.density)
+	block = ddem.append(skewed_mesh(), "elastic" if off == "elastic" else "concrete")
+	O.trackEnergy = book == "before"
+	start()
+	agitate(block, 0.5)
+	steps(60)
+	stress, total = np.array(block.stress), O.energy.total() if O.trackEnergy else None
+	for name in names:
+		setattr(concrete_mat, name, True)
+	for i in block.triangle_ids if off == "elastic" else ():
+		O.bodies[int(i)].material = concrete_mat
+	if off == "elastic" or "damage" in off and "viscoplasticFlow" in off:
+		assert np.abs(np.array(block.stress) - stress).max() < 1e-9 * np.abs(stress).max()  # nothing has moved yet
+	O.trackEnergy = book != "never"
+	for count in (1, 30):
+		steps(count)
+		if O.trackEnergy:
+			scale = O.energy["elastPotential"] + O.energy["kinetic"] + O.energy["plasticFlow"]
+			total = O.energy.total() if total is None else total
+			assert O.energy.total() == pytest.approx(total, abs=2e-6 * scale)
+	assert block.damage.max() < 0.05
 
 
 def test_without_rate_dependence_time_does_not_matter():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from yade import (
-	ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTriangle, ElastMat, ForceResetter, InteractionLoop, Matrix3, NewtonIntegrator, O, PyRunner, Vector3,
+	Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTriangle, ElastMat, ForceResetter, InteractionLoop, Matrix3, NewtonIntegrator, O, PyRunner, Vector3,
 	ddem
 )
 
@@ -208,6 +208,37 @@ def test_erasing_during_the_simulation_is_refused(erased):
 
 
 # --- engine
+
+
+def test_erasing_one_and_adding_another_is_refused():
+	block = ddem.append(skewed_mesh(), elastic())
+	start()
+	O.run(3, True)
+	first = O.bodies[int(block.triangle_ids[0])]
+	again = Body()
+	again.shape = DeformableTriangle(nodes=first.shape.nodes)
+	again.state.pos = again.state.refPos = first.state.refPos
+	again.material = first.material
+	O.bodies.erase(int(block.triangle_ids[0]))
+	O.bodies.append(again)
+	with pytest.raises(RuntimeError, match=f"body {block.triangle_ids[0]} at .* was erased"):
+		O.run(3, True)
+		O.step()
+
+
+def test_initial_damage_is_that_of_the_start():
+	O.materials.append(ConcreteDamageMat(label="concrete"))
+	block = ddem.append(skewed_mesh(), "concrete")
+	start()  # asks for the time step, so the engine has read the scene
+	shape = O.bodies[int(block.triangle_ids[2])].shape
+	shape.initialDamage = 0.5 * Matrix3.Identity
+	assert block.damage[2] > 0.3 and block.damage[3] == 0
+	O.run(3, True)
+	assert block.damage[2] > 0.3
+	shape.initialDamage = 0.7 * Matrix3.Identity
+	with pytest.raises(RuntimeError, match=f"body {block.triangle_ids[2]} .*initialDamage is the damage .* at the start"):
+		O.run(3, True)
+		O.step()
 
 
 @pytest.mark.parametrize("share, rotation", [(0, "none"), (1, "none"), (-0.1, "cosserat"), (0.25, "cosserat"), (0.4, "cosserat"), (math.nan, "corotational")])

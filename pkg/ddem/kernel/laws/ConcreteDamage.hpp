@@ -123,6 +123,11 @@ struct ConcreteDamage : LawDefaults {
 		s.stress     = stress;
 	}
 
+	/// Flow is a matter of rates: the strain that was there before it did not come in this step.
+	template <unsigned effects> static void beginAt(const PlaneTensor& strain, State<double>& s)
+	{
+		if constexpr (effects & (ConcreteEffects::Flow | ConcreteEffects::Damage)) s.strain = strain;
+	}
 	/// The book begins where the law was last evaluated: the stress of then, which the book needs; and the strain,
 	/// where only the book does.
 	template <unsigned effects> static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)

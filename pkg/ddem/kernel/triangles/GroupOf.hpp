@@ -153,6 +153,20 @@ public:
 		columns.fillUp();
 	}
 
+	void beginAt(std::size_t i, const std::set<std::string>& missing, const std::array<PlaneTensor, 3>& strain) override
+	{
+		const ListFields ofLaw  = fieldsOf(on); // without the book's
+		const bool       lawNew = std::any_of(
+                        ofLaw.list.begin(), ofLaw.list.end(), [&](const StateField& f) { return missing.count(f.name) > 0; });
+		for (std::size_t k = 0; k < 3; k++) {
+			State s = load(i, k);
+			if (lawNew) withMask<Law>(on, [&](auto mask) { Law::template beginAt<mask()>(strain[k], s); });
+			if (book && !missing.empty())
+				withMask<Law>(layout, [&](auto mask) { Law::template openBook<mask()>(prepared, strain[k], s); });
+			store(i, k, s);
+		}
+	}
+
 	void prepare(RotationTreatment newRotation, bool newWidest) override
 	{
 		rotation = newRotation;

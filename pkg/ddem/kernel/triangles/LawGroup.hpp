@@ -10,6 +10,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -95,6 +96,8 @@ struct LawDefaults {
 	///     beyondThreshold<effects>(law, own, strain): where elastic stress may no longer do; strain has no zz.
 	static constexpr bool hasThreshold(unsigned) { return false; }
 
+	/// Called where a law begins in the midst of a run, at this strain: its state is virgin but for what it knew before.
+	template <unsigned effects, class State> static void beginAt(const PlaneTensor&, State&) { }
 	/// Called when the energy book is opened: fields that only the book has get their values.
 	template <unsigned effects, class Prepared, class State> static void openBook(const Prepared&, const PlaneTensor&, State&) { }
 
@@ -152,6 +155,10 @@ public:
 	using StrainOf = std::function<std::array<PlaneTensor, 3>(std::size_t triangle)>;
 	/// Opens the energy book, which begins with the present strains, or leaves it.
 	virtual void keepBook(bool energy, const StrainOf& strain) = 0;
+	/// In the midst of a run, at the present strain: `missing` fields of a triangle have just begun to be remembered.
+	virtual void beginAt(
+	        std::size_t triangle, const std::set<std::string>& missing, const std::array<PlaneTensor, 3>& strain)
+	        = 0;
 	std::size_t  triangles() const { return end - begin; }
 	/// The one list of what a sub-element remembers.
 	const std::vector<StateField>& fields() const { return fieldList; }

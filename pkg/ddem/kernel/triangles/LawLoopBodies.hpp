@@ -98,7 +98,9 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 			if constexpr (energy) {
 				auto kept = state;
 				Law::template bookHeld<effects>(strain, stress, kept);
-				Law::template fields<effects>(kept, StoreFields<Number> { column, stride });
+				const auto stay = !(lanes | later); // those that move book their step themselves
+				Law::template fields<effects>(
+				        kept, StoreSomeFields<Number, decltype(lanes)> { column, stride, stay });
 				if (none && !again) state = kept;
 			}
 			if (none) {

@@ -1,0 +1,111 @@
+// GPL v2 or later, see LICENSE.
+#include <pkg/ddem/PythonLooks.hpp>
+
+#include <lib/pyutil/gil.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+namespace yade {
+
+namespace pythonLooks {
+
+CREATE_CPP_LOCAL_LOGGER("PythonLooks.cpp");
+
+namespace {
+
+	enum class Touches { Nothing, OneState };
+
+	std::vector<LaggingState*> lagging;
+	std::atomic<bool>          anyLags { false }; ///< whether there are any, for calls to ask without a lock
+	std::mutex                 busy;              ///< held while State is shown, and while `lagging` changes
+
+	/// What functions that Python knows touch; others may touch everything. Their objects are kept alive for good.
+	std::unordered_map<PyObject*, Touches> known;
+
+	ternaryfunc calledByBoost = nullptr;
+
+	void showWhatIsTouched(PyObject* function, PyObject* arguments)
+	{
+		const auto touches = known.find(function);
+		if (touches == known.end()) {
+			const std::lock_guard<std::mutex> lock(busy);
+			for (LaggingState* bodies : lagging)
+				bodies->showAll();
+		} else if (touches->second == Touches::OneState && PyTuple_GET_SIZE(arguments) > 0) {
+			const boost::python::extract<const State&> state(PyTuple_GET_ITEM(arguments, 0));
+			if (!state.check()) return;
+			const std::lock_guard<std::mutex> lock(busy);
+			for (LaggingState* bodies : lagging)
+				bodies->show(state());
+		}
+	}
+
+	PyObject* callWatched(PyObject* function, PyObject* arguments, PyObject* keywords)
+	{
+		if (anyLags.load(std::memory_order_acquire)) showWhatIsTouched(function, arguments);
+		return calledByBoost(function, arguments, keywords);
+	}
+
+	/// All functions of Boost.Python share one type, and every way to call them goes through its slot.
+	void watch()
+	{
+		namespace py           = boost::python;
+		const py::object looks = py::import("yade.ddem.looks");
+		const auto       list  = [&looks](const char* name, Touches touches) {
+                        const py::object functions = looks.attr(name)();
+                        for (py::ssize_t i = 0; i < py::len(functions); i++) {
+                                const py::object function = functions[i];
+                                if (known.emplace(function.ptr(), touches).second) Py_INCREF(function.ptr());
+                        }
+		};
+		list("touching_one_state", Touches::OneState);
+		list("touching_nothing", Touches::Nothing);
+		if (known.empty()) throw std::runtime_error("yade.ddem.looks lists no functions");
+		PyTypeObject* const type = Py_TYPE(known.begin()->first);
+		calledByBoost            = type->tp_call;
+		type->tp_call            = callWatched;
+		PyType_Modified(type);
+	}
+
+} // namespace
+
+bool watched()
+{
+	static const bool success = [] {
+		const gilLock lock;
+		try {
+			watch();
+			return true;
+		} catch (const boost::python::error_already_set&) {
+			PyErr_Print();
+		} catch (const std::exception& e) {
+			LOG_WARN(e.what());
+		}
+		LOG_WARN("State is written back to all bodies before every Python command, which is slow: see above");
+		return false;
+	}();
+	return success;
+}
+
+void begin(LaggingState& bodies)
+{
+	const std::lock_guard<std::mutex> lock(busy);
+	if (std::find(lagging.begin(), lagging.end(), &bodies) == lagging.end()) lagging.push_back(&bodies);
+	anyLags = true;
+}
+
+void end(LaggingState& bodies)
+{
+	if (!anyLags) return;
+	const std::lock_guard<std::mutex> lock(busy);
+	lagging.erase(std::remove(lagging.begin(), lagging.end(), &bodies), lagging.end());
+	anyLags = !lagging.empty();
+}
+
+} // namespace pythonLooks
+
+} // namespace yade

@@ -1,0 +1,217 @@
+# GPL v2 or later, see LICENSE.
+"""What Python sees and changes of State in a run, in which State lags until somebody looks: as if it never lagged."""
+import numpy as np
+import pytest
+
+from deformable_samples import agitate, elastic, in_main, skewed_mesh, start, state_positions, state_velocities
+from waiting import BackgroundRun, until
+from yade import (
+	Body, DeformableElastMat, DeformableEngine, ForceResetter, FrictMat, NewtonIntegrator, O, PyRunner, State,
+	TranslationEngine, ddem, utils
+)
+
+STEPS = 12
+
+
+def numbers(value):
+	"""Whatever Python saw, as a flat list of numbers."""
+	if value is None:
+		return []
+	if isinstance(value, dict):
+		return [number for key in sorted(value) for number in numbers(value[key])]
+	try:
+		return [float(value)]
+	except TypeError:
+		return [number for part in value for number in numbers(part)]
+
+
+class Scene:
+	"""A block with a driven side, and what commands of a PyRunner need; `held` are States taken before the run."""
+
+	def __init__(self, place):
+		self.material = elastic()
+		self.other = elastic("soft", bulk=3e9, shear=2e9)
+		self.block = ddem.append(skewed_mesh(), self.material)
+		self.node, self.core = int(self.block.node_ids[5]), int(self.block.triangle_ids[7])
+		self.top = self.block.boundary(lambda x, y: y > 0.024)
+		self.block.hold(self.top, "y")
+		O.materials.append(FrictMat(label="spheres"))
+		self.ball = O.bodies.append(utils.sphere((5, 5, 5), 0.1, material="spheres"))
+		self.drive = TranslationEngine(ids=[int(i) for i in self.top], translationAxis=(0, 1, 0), velocity=-1)
+		runner = PyRunner(command="command()", iterPeriod=1)
+		self.engine = start(*([self.drive, runner] if place == "before" else [self.drive]))
+		O.engines = O.engines + ([runner] if place == "after" else []) + [NewtonIntegrator(damping=0)]
+		self.held = [O.bodies[i].state for i in (self.node, self.core)]
+		agitate(self.block, 5)
+
+
+def give(owner, **attributes):
+	for name, value in attributes.items():
+		setattr(owner, name, value)
+
+
+def state(scene):
+	return O.bodies[scene.core].state
+
+
+READ = {
+	"pos": lambda s: O.bodies[s.node].state.pos,
+	"vel": lambda s: O.bodies[s.core].state.vel,
+	"ori": lambda s: O.bodies[s.core].state.ori.toAxisAngle(),
+	"angVel": lambda s: O.bodies[s.core].state.angVel,
+	"se3": lambda s: O.bodies[s.core].state.se3[0],
+	"displ, rot": lambda s: [state(s).displ(), state(s).rot()],
+	"dict": lambda s: {name: v for name, v in state(s).dict().items() if name in ("vel", "angVel", "mass")},
+	"held": lambda s: [part.pos for part in s.held],
+	"all": lambda s: [b.state.pos for b in O.bodies],
+	"driven": lambda s: [(O.bodies[int(i)].state.pos, O.bodies[int(i)].state.vel) for i in s.top],
+	"driven after bulk": lambda s: [utils.kineticEnergy(), [O.bodies[int(i)].state.vel for i in s.top]],
+	"other bodies": lambda s: [O.bodies[s.ball].state.pos, O.bodies[s.ball].state.vel],
+	"nodes, then all": lambda s: [O.bodies[s.node].state.vel, utils.kineticEnergy(), O.bodies[s.core].state.vel],
+	"bulk functions": lambda s: [utils.kineticEnergy(), utils.aabbExtrema(), utils.unbalancedForce()],
+	"getattr": lambda s: getattr(O.bodies[s.node].state, "vel"),
+	"class's property": lambda s: State.vel.fget(O.bodies[s.node].state),
+	"function kept": lambda s: KEPT(O.bodies[s.node].state),
+	"forces": lambda s: [O.forces.f(int(i)) for i in s.top],
+	"arrays": lambda s: [s.block.positions, s.block.stress],
+	"shape": lambda s: [O.bodies[s.core].shape.stress[0], O.bodies[s.core].shape.rotation],
+	"to string": lambda s: [len(str(O.bodies[s.core].state)) > 0],
+	"engine called": lambda s: [seen for seen in [utils.kineticEnergy()]],
+}
+KEPT = State.pos.fget
+
+WRITTEN = {
+	"vel": lambda s: O.iter == 4 and give(O.bodies[s.node].state, vel=(0.3, 0.2, 0)),
+	"vel of all, each step": lambda s: [give(O.bodies[int(i)].state, vel=(0, -1, 0)) for i in s.block.triangle_ids],
+	"held": lambda s: [give(part, vel=(0.1, 0.1, 0)) for part in s.held],
+	"pos": lambda s: O.iter == 4 and give(O.bodies[s.node].state, pos=O.bodies[s.node].state.pos + (1e-6, 0, 0)),
+	"ori": lambda s: O.iter == 4 and give(state(s), ori=utils.Quaternion((0, 0, 1), 0.01)),
+	"angVel": lambda s: O.iter == 4 and give(state(s), angVel=(0, 0, 3)),
+	"blockedDOFs": lambda s: O.iter == 4 and give(state(s), blockedDOFs="xyZ"),
+	"dynamic": lambda s: O.iter == 4 and give(O.bodies[s.core], dynamic=False),
+	"driven node": lambda s: give(O.bodies[int(s.top[0])].state, vel=(0.5, 3, 0)),
+	"updateAttrs": lambda s: O.iter == 4 and O.bodies[s.node].state.updateAttrs({"vel": (0.3, 0.2, 0)}),
+	"then bulk": lambda s: [give(O.bodies[s.node].state, vel=(0.3, 0.2, 0)), utils.kineticEnergy()][1],
+	"bulk, then": lambda s: [utils.kineticEnergy(), give(O.bodies[s.node].state, vel=(0.3, 0.2, 0))][0],
+	"other State": lambda s: O.iter == 4 and give(O.bodies[s.ball], state=State(mass=1, vel=(3, 3, 3))),
+	"forces": lambda s: O.forces.addF(s.core, (100, 20, 0)),
+	"torques": lambda s: O.forces.addT(s.core, (0, 0, 0.5)),
+	"forces sometimes": lambda s: O.iter % 3 == 0 and O.forces.addF(s.core, (100, 20, 0)),
+	"permanent force": lambda s: O.iter == 4 and O.forces.setPermF(s.core, (100, 20, 0)),
+	"engine": lambda s: give(s.drive, velocity=-0.1 * O.iter),
+	"gravity": lambda s: O.iter == 4 and give(s.engine, gravity=(0, -1e5, 0)),
+	"material's modulus": lambda s: O.iter == 4 and give(s.material, bulk=20e9),
+	"body's material": lambda s: O.iter == 4 and give(O.bodies[s.core], material=s.other),
+	"shape": lambda s: O.iter == 4 and give(O.bodies[s.core].shape, thickness=2),
+	"treatment": lambda s: O.iter == 4 and give(s.engine, rotation="corotational"),
+	"time step": lambda s: give(O, dt=O.dt * 0.99),
+	"other bodies come": lambda s: O.bodies.append(utils.sphere((O.iter + 9, 9, 9), 0.1, material="spheres")),
+	"block's velocity": lambda s: O.iter == 4 and give(s.block, velocity=(0.5, 0)),
+}
+
+
+def follow(command, place, shown):
+	"""What the command gave in each step, and the block at the end; `shown`: State is shown before it is called."""
+	O.reset()
+	scene, seen = Scene(place), []
+
+	def look():
+		if shown:
+			utils.kineticEnergy()  # reads State of all bodies: no function that touches nothing
+		seen.append(numbers(command(scene)))
+
+	in_main("command", look)
+	O.run(STEPS, True)
+	ids = [*scene.block.node_ids, *scene.block.triangle_ids]
+	end = [scene.block.positions, state_positions(ids), state_velocities(ids), np.array(scene.block.stress)]
+	return seen, end
+
+
+@pytest.mark.parametrize("place", ("before", "after"))
+@pytest.mark.parametrize("command", [*READ.values(), *WRITTEN.values()], ids=[*READ, *(name + " written" for name in WRITTEN)])
+def test_python_does_not_notice_that_state_lags(command, place):
+	seen, end = follow(command, place, shown=False)
+	expected, expected_end = follow(command, place, shown=True)
+	assert len(seen) >= STEPS - 1 and repr(seen) == repr(expected)  # bit by bit, also what is not a number
+	for part, wanted in zip(end, expected_end):
+		assert np.array_equal(part, wanted)
+	assert np.isfinite(end[0]).all()
+
+
+def test_a_scene_saved_in_a_look_goes_on(tmp_path):
+	file = str(tmp_path / "look.yade.gz")
+	scene = Scene("after")
+	in_main("command", lambda: O.iter == 5 and O.save(file))
+	O.run(STEPS, True)
+	expected = scene.block.positions.copy()
+	O.load(file)
+	in_main("command", lambda: None)
+	O.run(STEPS - O.iter - 1, True)  # YADE counts a step when it has ended
+	assert np.array_equal(O.engines[2].array("nodePosition"), expected)
+
+
+def test_what_is_not_finite_stops_the_run_with_its_body():
+	scene = Scene("before")
+	in_main("command", lambda: O.iter == 3 and give(O.bodies[scene.node].state, vel=(np.nan, 0, 0)))
+	with pytest.raises(Exception, match=f"body {scene.node} at .*not finite"):
+		O.run(STEPS, True)
+		O.step()
+
+
+@pytest.mark.parametrize("ended_by", ("pause", "stopAtIter", "outside"))
+def test_state_is_current_where_a_look_ends_a_run(ended_by):
+	scene = Scene("after")
+	ends = {"pause": O.pause, "stopAtIter": lambda: give(O, stopAtIter=O.iter + 1), "outside": lambda: None}[ended_by]
+	in_main("command", lambda: O.iter == 6 and ends())
+	if ended_by == "outside":
+		run = BackgroundRun()
+		until(lambda: O.iter > 20)
+		run.pause()
+	else:
+		O.run(STEPS, True)
+	node = O.bodies[scene.node].state
+	assert tuple(node.pos)[:2] == tuple(scene.engine.array("nodePosition")[5])
+	node.vel = (0.25, 0.5, 0)
+	assert tuple(scene.engine.array("nodeVelocity")[5]) == (0.25, 0.5)  # taken up
+
+
+def test_looks_at_two_engines():
+	blocks = [ddem.append(skewed_mesh(), elastic(label)) for label in ("a", "b")]
+	engines = [DeformableEngine(ids=list(blocks[0].triangle_ids)), DeformableEngine(groupMask=1 << 21)]
+	seen = []
+
+	def look():
+		for block, engine in zip(blocks, engines):
+			i = int(block.node_ids[3])
+			seen.append(np.abs(np.array(O.bodies[i].state.pos)[:2] - engine.array("nodePosition")[3]).max())
+
+	O.engines = [ForceResetter(), *engines, PyRunner(command=in_main("look", look), iterPeriod=1)]
+	O.dt = 1e-7
+	for block in blocks:
+		agitate(block, 5)
+	O.run(STEPS, True)
+	assert len(seen) >= 2 * (STEPS - 1) and max(seen) == 0
+
+
+def test_scenes_and_engines_go_while_state_lags():
+	for _ in range(3):
+		scene = Scene("after")
+		in_main("command", lambda: None)
+		O.run(STEPS, True)
+		O.engines = O.engines[:-1]
+		O.run(2, True)
+		O.reset()
+	O.bodies.append(Body())
+	assert tuple(O.bodies[0].state.pos) == (0, 0, 0)
+
+
+def test_functions_that_touch_one_state_are_those_of_state():
+	from yade.ddem import looks
+	one, nothing = looks.touching_one_state(), looks.touching_nothing()
+	assert State.vel.fget in one and State.vel.fset in one and State.displ in one
+	assert not set(map(id, one)) & set(map(id, nothing))
+	assert Body.state.fget in nothing and Body.state.fset not in nothing
+	assert DeformableElastMat.rotationStiffness.fset not in nothing and DeformableEngine.rotation.fset not in nothing
+	assert TranslationEngine.velocity.fset in nothing
+	for function in (utils.kineticEnergy, utils.aabbExtrema, type(O).save, type(O).pause, type(O.bodies).append, Body.material.fset):
+		assert function not in one and function not in nothing
