@@ -8,8 +8,9 @@
 
 namespace yade {
 
-/** Books energies of bonds, contacts and walls. Safe in parallel loops: EnergyTracker makes new entries without a lock and moves its arrays then, so all of
- * ours are made at once, by the first thread that comes, before any thread adds to one of them.
+/** Books energies of bonds, contacts and walls. Safe in parallel loops: EnergyTracker makes new entries without a lock
+ * and moves its arrays then, so all of ours are made at once, by the first thread that comes,
+ * before any thread adds to one of them.
  */
 class BondedEnergy {
 public:

@@ -19,8 +19,10 @@ namespace {
 	/// Engines that look at no bond.
 	bool neverLooksAtBonds(const Engine& engine)
 	{
-		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "ForceEngine", "TorqueEngine", "DeformableEngine" };
-		return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine) || dynamic_cast<const ViscousBodyDamping*>(&engine);
+		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider",
+			                                   "ForceEngine",   "TorqueEngine",     "DeformableEngine" };
+		return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine)
+		        || dynamic_cast<const ViscousBodyDamping*>(&engine);
 	}
 
 } // namespace
@@ -70,7 +72,10 @@ bool BondedInteractionLoop::locateHeld()
 	for (const Held& h : held) {
 		if (!h.interaction) continue;
 		const auto place = size_t(h.interaction->linIx);
-		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys || !h.interaction->geom) return false; // somebody has erased it
+		// somebody has erased it
+		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys
+		    || !h.interaction->geom)
+			return false;
 		if (exposed && !constantsHold(size_t(&h - held.data()))) return false;
 		isHeld[place] = 1;
 	}
@@ -82,9 +87,11 @@ bool BondedInteractionLoop::constantsHold(size_t bond) const
 {
 	const BondedPhys& phys = *held[bond].phys;
 	const auto&       geom = static_cast<const ScGeom&>(*held[bond].interaction->geom);
-	const auto        is   = [&](ddem::BondSystem::Constant which, Real value) { return system.constant(which, bond) == value; };
+	const auto        is
+	        = [&](ddem::BondSystem::Constant which, Real value) { return system.constant(which, bond) == value; };
 	using System           = ddem::BondSystem;
-	return phys.bonded && is(System::Normal, phys.kn) && is(System::Shear, phys.ks) && is(System::Radius1, geom.radius1) && is(System::Radius2, geom.radius2);
+	return phys.bonded && is(System::Normal, phys.kn) && is(System::Shear, phys.ks)
+	        && is(System::Radius1, geom.radius1) && is(System::Radius2, geom.radius2);
 }
 
 /// What InteractionLoop does, for everything but the bonds.
@@ -103,7 +110,8 @@ void BondedInteractionLoop::actOnOthers()
 		if (isHeld[size_t(i)]) continue;
 		const shared_ptr<Interaction>& I = all[size_t(i)];
 		try {
-			if ((removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) || !act(I)) all.requestErase(I);
+			if ((removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) || !act(I))
+				all.requestErase(I);
 		} catch (...) {
 #pragma omp critical(BondedInteractionLoopFailure)
 			failure = std::current_exception();
@@ -118,7 +126,8 @@ bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 	const auto& bodies = *scene->bodies;
 	Body *body1 = bodies[I->getId1()].get(), *body2 = bodies[I->getId2()].get();
 	if (!body1 || !body2) return false;
-	if (body1->isClump() || body2->isClump() || !body1->shape || !body2->shape || !I->functorCache.geomExists) return true;
+	if (body1->isClump() || body2->isClump() || !body1->shape || !body2->shape || !I->functorCache.geomExists)
+		return true;
 	auto& functors = I->functorCache;
 	bool  swap     = false;
 	if (!functors.geom) {
@@ -131,15 +140,20 @@ bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 		}
 	}
 	const bool wasReal = I->isReal();
-	if (!functors.geom->go(body1->shape, body2->shape, *body1->state, *body2->state, Vector3r::Zero(), false, I)) return !wasReal;
+	if (!functors.geom->go(body1->shape, body2->shape, *body1->state, *body2->state, Vector3r::Zero(), false, I))
+		return !wasReal;
 	if (!functors.phys) functors.phys = physDispatcher->getFunctor2D(body1->material, body2->material, swap);
 	if (!functors.phys)
-		throw std::runtime_error("BondedInteractionLoop has no Ip2 functor for " + body1->material->getClassName() + " and " + body2->material->getClassName());
+		throw std::runtime_error(
+		        "BondedInteractionLoop has no Ip2 functor for " + body1->material->getClassName() + " and "
+		        + body2->material->getClassName());
 	functors.phys->go(body1->material, body2->material, I);
 	if (!wasReal) I->iterMadeReal = scene->iter;
 	if (!functors.constLaw) functors.constLaw = lawDispatcher->getFunctor2D(I->geom, I->phys, swap);
 	if (!functors.constLaw)
-		throw std::runtime_error("BondedInteractionLoop has no Law2 functor for " + I->geom->getClassName() + " and " + I->phys->getClassName());
+		throw std::runtime_error(
+		        "BondedInteractionLoop has no Law2 functor for " + I->geom->getClassName() + " and "
+		        + I->phys->getClassName());
 	return functors.constLaw->go(I->geom, I->phys, I.get());
 }
 
@@ -152,7 +166,8 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 		if (phys && phys->bonded) held.push_back({ I, phys });
 	}
 	// Interactions lie in an order that depends on the past; sums must not.
-	std::sort(held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
+	std::sort(
+	        held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
 
 	system.clear();
 	particles.clear();
@@ -172,7 +187,8 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 		const std::int32_t first = placeOf(I.getId1()), second = placeOf(I.getId2());
 		system.add(first, second, phys.bond(static_cast<const ScGeom&>(*I.geom)), phys.strength());
 		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
-		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress }) != ddem::BondFailure::None)
+		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress })
+		            != ddem::BondFailure::None)
 			overloaded.push_back(std::int32_t(j));
 	}
 	system.assemble(particles.size());
@@ -231,7 +247,8 @@ void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std:
 		Held& h = held[size_t(bond)];
 		if (!h.interaction) continue;
 		const auto& row = system.row(size_t(bond));
-		const ddem::BondStress last = exposed ? ddem::BondStress { h.phys->normalStress, h.phys->shearStress } : ddem::BondStress { row.normalStress, row.shearStress };
+		const ddem::BondStress last = exposed ? ddem::BondStress { h.phys->normalStress, h.phys->shearStress }
+		                                      : ddem::BondStress { row.normalStress, row.shearStress };
 		exposeGeometry(size_t(bond));
 		if (!bondLaw.breakBond(*h.interaction, last)) scene->interactions->requestErase(h.interaction);
 		system.remove(size_t(bond));
@@ -262,7 +279,9 @@ std::map<std::pair<int, int>, BondNow> BondedInteractionLoop::bondsNow() const
 	const std::lock_guard<std::mutex>      lock(busy);
 	std::map<std::pair<int, int>, BondNow> result;
 	for (size_t j = 0; j < held.size(); j++)
-		if (const auto& I = held[j].interaction) result[std::minmax(I->getId1(), I->getId2())] = { system.row(j).normalStress, system.row(j).shearStress, held[j].phys->bondRadius };
+		if (const auto& I = held[j].interaction)
+			result[std::minmax(I->getId1(), I->getId2())]
+			        = { system.row(j).normalStress, system.row(j).shearStress, held[j].phys->bondRadius };
 	return result;
 }
 
@@ -271,7 +290,10 @@ void BondedInteractionLoop::writeBack()
 	if (exposed) return;
 	exposed = true;
 	for (size_t j = 0; j < held.size(); j++) {
-		if (!held[j].interaction || !held[j].interaction->geom || held[j].interaction->phys.get() != held[j].phys) continue; // broken, or erased by somebody
+		// broken, or erased by somebody
+		if (!held[j].interaction || !held[j].interaction->geom
+		    || held[j].interaction->phys.get() != held[j].phys)
+			continue;
 		exposeGeometry(j);
 		BondedPhys&    phys  = *held[j].phys;
 		const auto&    geom  = static_cast<const ScGeom&>(*held[j].interaction->geom);
@@ -293,7 +315,7 @@ void BondedInteractionLoop::exposeGeometry(size_t j)
 	const Real     distance = branch.norm();
 	geom.normal             = branch / distance;
 	geom.penetrationDepth   = geom.radius1 + geom.radius2 - distance;
-	geom.contactPoint       = Vector3r(x1[0], x1[1], x1[2]) + (geom.radius1 - geom.penetrationDepth / 2) * geom.normal;
+	geom.contactPoint = Vector3r(x1[0], x1[1], x1[2]) + (geom.radius1 - geom.penetrationDepth / 2) * geom.normal;
 }
 
 void BondedInteractionLoop::stopAtNotFinite(std::int32_t bond) const
@@ -301,8 +323,10 @@ void BondedInteractionLoop::stopAtNotFinite(std::int32_t bond) const
 	const Interaction& I = *held[size_t(bond)].interaction;
 	const Vector3r     x = (*scene->bodies)[I.getId1()]->state->refPos;
 	std::ostringstream text;
-	text << "the bond of bodies #" << I.getId1() << " and #" << I.getId2() << " became infinite or not a number in step " << scene->iter << ", t = " << scene->time
-	     << " s; #" << I.getId1() << " was at (" << x[0] << ", " << x[1] << ", " << x[2] << ") m at the start; check O.dt = " << scene->dt
+	text << "the bond of bodies #" << I.getId1() << " and #" << I.getId2()
+	     << " became infinite or not a number in step " << scene->iter << ", t = " << scene->time << " s; #"
+	     << I.getId1() << " was at (" << x[0] << ", " << x[1] << ", " << x[2]
+	     << ") m at the start; check O.dt = " << scene->dt
 	     << " s against ddem.bonded.critical_time_step(), and what moves these bodies";
 	throw std::runtime_error(text.str());
 }

@@ -20,20 +20,27 @@ public:
 
 	/// Brings geometry and physics of the bonds' interactions up to the last step.
 	void expose();
-	/// Bonds that hold, by the ids of their bodies, as of the last step; safe while a run goes on. Empty where bonds are computed one by one.
+	/// Bonds that hold, by the ids of their bodies, as of the last step; safe while a run goes on.
+	/// Empty where bonds are computed one by one.
 	std::map<std::pair<int, int>, BondNow> bondsNow() const;
 	void preSave(BondedInteractionLoop&) { expose(); }
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC(BondedInteractionLoop, InteractionLoop,
-		"An :yref:`InteractionLoop`, with the same arguments, that computes bonds of :yref:`BondedPhys` all together instead of one by one: some at a time in SIMD lanes, then every particle "
-		"collects the loads of its bonds in a fixed order: what bonds do does not depend on the number of threads, bit by bit. Contacts, and all other interactions, run through the functors as "
-		"usual; their sums depend on threads in the last digits, as in all of YADE.\n\n"
-		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look (end of a run, O.step, periodic engines that are due, engines of unknown kind). After O.pause() of a run in the background they may be a few steps old until "
-		":yref:`bonds<Law2_ScGeom_BondedPhys_MohrCoulomb.bonds>` is called. Stiffnesses and radii changed by hand are taken up after such a look.\n\n"
-		"Bonds are computed one by one where the base class must be asked: with :yref:`callbacks<InteractionLoop.callbacks>`, "
-		":yref:`loopOnSortedInteractions<InteractionLoop.loopOnSortedInteractions>`, "
-		"a number of threads of its own, or periodic boundaries.\n\n"
+		"An :yref:`InteractionLoop`, with the same arguments, that computes bonds of :yref:`BondedPhys` all "
+		"together instead of one by one: some at a time in SIMD lanes, then every particle collects the loads "
+		"of its bonds in a fixed order: what bonds do does not depend on the number of threads, bit by bit. "
+		"Contacts, and all other interactions, run through the functors as usual; their sums depend on threads "
+		"in the last digits, as in all of YADE.\n\n"
+		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look "
+		"(end of a run, O.step, periodic engines that are due, engines of unknown kind). After O.pause() of "
+		"a run in the background they may be a few steps old until "
+		":yref:`bonds<Law2_ScGeom_BondedPhys_MohrCoulomb.bonds>` is called. Stiffnesses and radii changed by "
+		"hand are taken up after such a look.\n\n"
+		"Bonds are computed one by one where the base class must be asked: "
+		"with :yref:`callbacks<InteractionLoop.callbacks>`, "
+		":yref:`loopOnSortedInteractions<InteractionLoop.loopOnSortedInteractions>`, a number of threads of "
+		"its own, or periodic boundaries.\n\n"
 		"Errors: RuntimeError naming the bond where forces become infinite or not a number, "
 		"and under mpirun with several processes."
 	);
@@ -71,7 +78,8 @@ private:
 	const Scene*                          knownScene = nullptr;
 	bool                                  exposed = true;
 	SingleProcess                         process;
-	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written back: Python may ask at any time
+	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written
+	                                                       ///< back: Python may ask at any time
 	Showings                              showings;
 };
 REGISTER_SERIALIZABLE(BondedInteractionLoop);

@@ -11,7 +11,9 @@ DDEM_PLUGIN((BondedMat))
 namespace {
 
 	/// Throws "BondedMat 'rock': name = value unit complaint" unless `good`.
-	void require(bool good, const BondedMat& material, const char* name, Real value, const char* unit, const char* complaint)
+	void
+	require(bool good, const BondedMat& material, const char* name, Real value, const char* unit,
+	        const char* complaint)
 	{
 		if (good) return;
 		std::ostringstream text;
@@ -45,8 +47,10 @@ void BondedMat::validate() const
 	        tensileStrength,
 	        "Pa",
 	        "must be positive (infinite: the cut-off is cohesion/tan(bondFrictionAngle))");
-	require(frictionDynamic >= 0 && std::isfinite(frictionDynamic), *this, "frictionDynamic", frictionDynamic, "[-]", "must not be negative");
-	for (const auto& [name, value] : { std::make_pair("normalDamping", normalDamping), std::make_pair("shearDamping", shearDamping) })
+	require(frictionDynamic >= 0 && std::isfinite(frictionDynamic), *this, "frictionDynamic", frictionDynamic,
+	        "[-]", "must not be negative");
+	for (const auto& [name, value] :
+	     { std::make_pair("normalDamping", normalDamping), std::make_pair("shearDamping", shearDamping) })
 		require(value >= 0 && std::isfinite(value), *this, name, value, "[-]", "must not be negative");
 	require(frictionStatic >= frictionDynamic && std::isfinite(frictionStatic),
 	        *this,

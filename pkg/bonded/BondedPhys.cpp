@@ -15,7 +15,8 @@ void BondedPhys::join(const State& state1, const State& state2, const Vector3r& 
 	const Real                length = branch.norm();
 	const ddem::BondSection   section(length / 2); // ESyS-Particle's mean radius, d0/2
 	const ddem::BondStiffness stiffness = ddem::bondStiffness(elasticity(), section, length);
-	const ddem::Bond          made      = ddem::makeBond(stiffness, 0, 0, ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+	const ddem::Bond made = ddem::makeBond(
+	        stiffness, 0, 0, ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
 
 	bonded     = true;
 	bondLength = length;
@@ -49,7 +50,8 @@ void BondedPhys::setContactStiffness()
 
 ddem::Bond BondedPhys::bond(const ScGeom& geom) const
 {
-	return { { kn, ks, kb, kt }, bondLength, geom.radius1, geom.radius2, ddem::rotation(frame1), ddem::rotation(frame2) };
+	return { { kn, ks, kb, kt },    bondLength, geom.radius1, geom.radius2, ddem::rotation(frame1),
+		 ddem::rotation(frame2) };
 }
 
 ddem::ContactDamping BondedPhys::contactDamping(Real mass1, Real mass2) const

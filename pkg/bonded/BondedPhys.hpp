@@ -14,7 +14,8 @@ public:
 
 	/// Joins the two particles as they are now. \param branch from the centre of particle 1 to that of 2 [m]
 	void join(const State& state1, const State& state2, const Vector3r& branch);
-	/// Leaves a frictional contact in place of the bond. \param reach distance of the centres below which it acts [m]
+	/// Leaves a frictional contact in place of the bond. \param reach distance of the centres
+	/// below which it acts [m]
 	void part(Real reach);
 	/// Springs of the contact for its present reach.
 	void setContactStiffness();
@@ -33,10 +34,12 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BondedPhys, NormShearPhys,
-		"Interaction of two particles of :yref:`BondedMat`: an elastic bond while *bonded*, else a frictional contact. "
-		":yref:`kn<NormPhys.kn>` and :yref:`ks<NormShearPhys.ks>` [N/m] are those of the bond or of the contact, whichever acts.",
+		"Interaction of two particles of :yref:`BondedMat`: an elastic bond while *bonded*, else a frictional "
+		"contact. :yref:`kn<NormPhys.kn>` and :yref:`ks<NormShearPhys.ks>` [N/m] are those of the bond or of "
+		"the contact, whichever acts.",
 		((bool,bonded,false,Attr::readonly,"Whether the bond holds"))
-		((bool,sliding,false,Attr::readonly,"Whether the contact has slipped before, so that dynamic friction applies"))
+		((bool,sliding,false,Attr::readonly,
+			"Whether the contact has slipped before, so that dynamic friction applies"))
 		((Real,young,NaN,Attr::readonly,"Young's modulus of cement and contact [Pa]"))
 		((Real,poisson,NaN,Attr::readonly,"Poisson's ratio of cement and contact [-]"))
 		((Real,cohesion,NaN,Attr::readonly,"Cohesion of the bond [Pa]"))
@@ -46,22 +49,35 @@ public:
 		((Real,frictionDynamic,NaN,Attr::readonly,"Dynamic coefficient of friction [-]"))
 		((Real,kb,0,Attr::readonly,"Bending stiffness of the bond [N·m/rad]"))
 		((Real,kt,0,Attr::readonly,"Torsion stiffness of the bond [N·m/rad]"))
-		((Real,bondLength,0,Attr::readonly,"Distance of the centres when the bond was made [m]; 0 for a pair that never was bonded"))
+		((Real,bondLength,0,Attr::readonly,
+			"Distance of the centres when the bond was made [m]; 0 for a pair that never was bonded"))
 		((Real,bondRadius,0,Attr::readonly,"Radius of the bond's cross-section [m]"))
-		((Real,contactReach,0,Attr::readonly,"Distance of the centres below which the contact acts [m]: the sum of the radii, or less where particles were bonded with an overlap"))
-		((Quaternionr,frame1,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),"The bond's frame in the axes of particle 1"))
-		((Quaternionr,frame2,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),"The bond's frame in the axes of particle 2"))
-		((bool,gradualFriction,false,Attr::readonly,"Whether the tangential force of the contact grows gradually"))
+		((Real,contactReach,0,Attr::readonly,
+			"Distance of the centres below which the contact acts [m]: the sum of the radii, or less where "
+			"particles were bonded with an overlap"))
+		((Quaternionr,frame1,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),
+			"The bond's frame in the axes of particle 1"))
+		((Quaternionr,frame2,Quaternionr::Identity(),(Attr::readonly|Attr::hidden),
+			"The bond's frame in the axes of particle 2"))
+		((bool,gradualFriction,false,Attr::readonly,
+			"Whether the tangential force of the contact grows gradually"))
 		((Real,normalDamping,0,Attr::readonly,"Normal damping of the contact, part of the critical one [-]"))
 		((Real,shearDamping,0,Attr::readonly,"Tangential damping of the contact, part of the critical one [-]"))
-		((Vector3r,contactNormal,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Normal of the contact in the last step"))
-		((Vector3r,contactShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Force that a linear tangential spring of the contact had in the last step [N]"))
-		((Real,contactForce,0,(Attr::readonly|Attr::hidden),"Force of the contact's tangential spring in the last step [N]"))
+		((Vector3r,contactNormal,Vector3r::Zero(),(Attr::readonly|Attr::hidden),
+			"Normal of the contact in the last step"))
+		((Vector3r,contactShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),
+			"Force that a linear tangential spring of the contact had in the last step [N]"))
+		((Real,contactForce,0,(Attr::readonly|Attr::hidden),
+			"Force of the contact's tangential spring in the last step [N]"))
 		((Real,contactEnergy,0,(Attr::readonly|Attr::hidden),"Energy of the contact's tangential spring [J]"))
-		((Real,viscousNormal,0,(Attr::readonly|Attr::hidden),"Normal damping force of the contact in the last step [N]"))
-		((Vector3r,viscousShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"Tangential damping force of the contact in the last step [N]"))
-		((Real,normalStress,0,Attr::readonly,"Largest normal stress of the bond's section, tension positive: :math:`F_n/A + |M_b|R/I` [Pa]"))
-		((Real,shearStress,0,Attr::readonly,"Largest shear stress of the bond's section: :math:`|F_s|/A + |M_t|R/J` [Pa]")),
+		((Real,viscousNormal,0,(Attr::readonly|Attr::hidden),
+			"Normal damping force of the contact in the last step [N]"))
+		((Vector3r,viscousShear,Vector3r::Zero(),(Attr::readonly|Attr::hidden),
+			"Tangential damping force of the contact in the last step [N]"))
+		((Real,normalStress,0,Attr::readonly,
+			"Largest normal stress of the bond's section, tension positive: :math:`F_n/A + |M_b|R/I` [Pa]"))
+		((Real,shearStress,0,Attr::readonly,
+			"Largest shear stress of the bond's section: :math:`|F_s|/A + |M_t|R/J` [Pa]")),
 		createIndex();
 	);
 	// clang-format on

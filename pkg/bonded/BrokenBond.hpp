@@ -27,7 +27,9 @@ public:
 		((Real,shearStress,NaN,Attr::readonly,"Shear stress when it broke [Pa]"))
 		((Real,energy,NaN,Attr::readonly,"Elastic energy lost, beyond what the contact left behind keeps [J]")),
 		/*ctor*/,
-		.add_property("mode",&BrokenBond::mode,"'tension' or 'shear': which of them used up more of the Mohr-Coulomb envelope; always 'tension' beyond the cut-off")
+		.add_property("mode",&BrokenBond::mode,
+			"'tension' or 'shear': which of them used up more of the Mohr-Coulomb envelope; always "
+			"'tension' beyond the cut-off")
 	);
 	// clang-format on
 };

@@ -8,17 +8,23 @@
 
 namespace yade {
 
-DDEM_PLUGIN((ElasticWallMat)(ElasticWallPhys)(Ip2_ElasticWallMat_BondedMat_ElasticWallPhys)(Law2_ScGeom_ElasticWallPhys_Repulsion))
+DDEM_PLUGIN((ElasticWallMat)
+        (ElasticWallPhys)
+        (Ip2_ElasticWallMat_BondedMat_ElasticWallPhys)
+        (Law2_ScGeom_ElasticWallPhys_Repulsion))
 
 void ElasticWallMat::validate() const
 {
 	const auto refuse = [this](const char* name, Real value, const char* complaint) {
 		std::ostringstream text;
-		text << "ElasticWallMat" << (label.empty() ? "" : " '" + label + "'") << ": " << name << " = " << value << " Pa " << complaint;
+		text << "ElasticWallMat" << (label.empty() ? "" : " '" + label + "'") << ": " << name << " = " << value
+		     << " Pa " << complaint;
 		throw std::invalid_argument(text.str());
 	};
-	if (!(stiffness > 0) || !std::isfinite(stiffness)) refuse("stiffness", stiffness, "must be positive and finite");
-	if (!(shearStiffness >= 0) || !std::isfinite(shearStiffness)) refuse("shearStiffness", shearStiffness, "must not be negative");
+	if (!(stiffness > 0) || !std::isfinite(stiffness))
+		refuse("stiffness", stiffness, "must be positive and finite");
+	if (!(shearStiffness >= 0) || !std::isfinite(shearStiffness))
+		refuse("shearStiffness", shearStiffness, "must not be negative");
 }
 
 namespace {
@@ -39,16 +45,20 @@ namespace {
 
 } // namespace
 
-void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::go(const shared_ptr<Material>& wall, const shared_ptr<Material>&, const shared_ptr<Interaction>& interaction)
+void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::go(
+        const shared_ptr<Material>& wall, const shared_ptr<Material>&, const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
-	interaction->phys = makeWallContact(static_cast<const ElasticWallMat&>(*wall), static_cast<const ScGeom&>(*interaction->geom).radius2);
+	interaction->phys = makeWallContact(
+	        static_cast<const ElasticWallMat&>(*wall), static_cast<const ScGeom&>(*interaction->geom).radius2);
 }
 
 void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond(int wall, const std::vector<int>& spheres)
 {
 	Scene&     current  = *Omega::instance().getScene();
-	const auto bodyOf   = [&](int id) { return id >= 0 && id < int(current.bodies->size()) ? (*current.bodies)[id].get() : nullptr; };
+	const auto bodyOf = [&](int id) {
+		return id >= 0 && id < int(current.bodies->size()) ? (*current.bodies)[id].get() : nullptr;
+	};
 	const Body* const wallBody = bodyOf(wall);
 	const auto*       shape    = wallBody ? dynamic_cast<const Wall*>(wallBody->shape.get()) : nullptr;
 	const auto*       material = wallBody ? dynamic_cast<const ElasticWallMat*>(wallBody->material.get()) : nullptr;
@@ -56,26 +66,31 @@ void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond(int wall, const std::vec
 	material->validate();
 	for (const int id : spheres) { // all checks come first, so that nothing is half-built on error
 		const Body* body = bodyOf(id);
-		if (!body || !dynamic_cast<const Sphere*>(body->shape.get()) || !dynamic_cast<const BondedMat*>(body->material.get()))
+		if (!body || !dynamic_cast<const Sphere*>(body->shape.get())
+		    || !dynamic_cast<const BondedMat*>(body->material.get()))
 			refuseWall(wall, "body #" + std::to_string(id) + " is no sphere of BondedMat");
 		const auto old  = current.interactions->find(wall, id);
 		const auto phys = old ? dynamic_cast<const ElasticWallPhys*>(old->phys.get()) : nullptr;
-		if ((phys && phys->bonded) || std::count(spheres.begin(), spheres.end(), id) > 1) refuseWall(wall, "sphere #" + std::to_string(id) + " is bonded to it already");
+		if ((phys && phys->bonded) || std::count(spheres.begin(), spheres.end(), id) > 1)
+			refuseWall(wall, "sphere #" + std::to_string(id) + " is bonded to it already");
 	}
 	for (const int id : spheres) {
-		if (const auto old = current.interactions->find(wall, id)) current.interactions->erase(wall, id, old->linIx);
+		if (const auto old = current.interactions->find(wall, id))
+			current.interactions->erase(wall, id, old->linIx);
 		const Body&    body = *bodyOf(id);
 		const Vector3r branch = body.state->pos - wallBody->state->pos;
 		auto           geom   = boost::make_shared<ScGeom>();
 		geom->radius1 = geom->radius2 = static_cast<const Sphere&>(*body.shape).radius;
-		geom->normal                  = Vector3r::Unit(shape->axis) * (shape->sense ? shape->sense : (branch[shape->axis] < 0 ? -1 : 1));
+		geom->normal                  = Vector3r::Unit(shape->axis)
+		        * (shape->sense ? shape->sense : (branch[shape->axis] < 0 ? -1 : 1));
 		geom->penetrationDepth        = geom->radius2 - geom->normal.dot(branch);
 		geom->contactPoint            = body.state->pos - geom->normal * geom->normal.dot(branch);
 		auto phys                     = makeWallContact(*material, geom->radius2);
 		phys->bonded                  = true;
 		phys->ks                      = ddem::wallSpring(geom->radius2, material->shearStiffness);
 		phys->bondedBranch            = branch;
-		auto interaction              = boost::make_shared<Interaction>(wall, id); // in the order of the functors, which must not be swapped later
+		// in the order of the functors, which must not be swapped later
+		auto interaction              = boost::make_shared<Interaction>(wall, id);
 		interaction->geom             = geom;
 		interaction->phys             = phys;
 		interaction->iterMadeReal     = current.iter;
@@ -85,20 +100,23 @@ void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond(int wall, const std::vec
 
 bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
-	// The wall is always the first body of a wall-sphere geometry, and the normal points from it to the sphere's side.
+	// The wall is always the first body of a wall-sphere geometry, and the normal points from
+	// it to the sphere's side.
 	const auto&    geom   = static_cast<const ScGeom&>(*iGeom);
 	auto&          phys   = static_cast<ElasticWallPhys&>(*iPhys);
 	const Vector3r branch = Body::byId(I->getId2(), scene)->state->pos - Body::byId(I->getId1(), scene)->state->pos;
 	Real           stored = 0;
 	if (phys.bonded) {
 		const Vector3r displacement = branch - phys.bondedBranch;
-		const Vector3r force        = ddem::eigenVector(ddem::bondedWallForce(
-                        geom.radius2, phys.wallStiffness, phys.shearStiffness, ddem::spaceVector(displacement), ddem::spaceVector(geom.normal)));
+		const Vector3r force = ddem::eigenVector(ddem::bondedWallForce(
+		        geom.radius2, phys.wallStiffness, phys.shearStiffness, ddem::spaceVector(displacement),
+		        ddem::spaceVector(geom.normal)));
 		phys.normalForce            = force.dot(geom.normal) * geom.normal;
 		phys.shearForce             = force - phys.normalForce;
 		stored                      = -0.5 * force.dot(displacement);
 	} else {
-		const Real distance = geom.normal.dot(branch), force = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
+		const Real distance = geom.normal.dot(branch),
+		           force = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
 		if (!(force > 0)) return false;
 		stored = 0.5 * force * (geom.radius2 - distance);

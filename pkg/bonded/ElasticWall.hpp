@@ -15,12 +15,18 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(ElasticWallMat, Material,
-		"Material of a :yref:`Wall` that repels particles of :yref:`BondedMat` without friction, or holds those that are bonded to it, as the walls of ESyS-Particle do.\n\n"
+		"Material of a :yref:`Wall` that repels particles of :yref:`BondedMat` without friction, or holds "
+		"those that are bonded to it, as the walls of ESyS-Particle do.\n\n"
 		"Errors: ValueError for a stiffness that is not positive, or a negative shear stiffness.",
-		((Real,stiffness,100e9,Attr::triggerPostLoad,"Stiffness :math:`K` of the wall [Pa]; the spring of a contact with a sphere of radius :math:`r` is :math:`\\pi r K`"))
-		((Real,shearStiffness,0,Attr::triggerPostLoad,"Stiffness :math:`K_s` along the wall [Pa], for bonded spheres only; 0: they slide along it")),
+		((Real,stiffness,100e9,Attr::triggerPostLoad,
+			"Stiffness :math:`K` of the wall [Pa]; the spring of a contact with a sphere of radius "
+			":math:`r` is :math:`\\pi r K`"))
+		((Real,shearStiffness,0,Attr::triggerPostLoad,
+			"Stiffness :math:`K_s` along the wall [Pa], for bonded spheres only; 0: they slide along it")),
 		createIndex();,
-		.def("validate",&ElasticWallMat::validate,"ValueError naming the parameter if one is out of range; checked when parameters are set by the constructor, and again when bonds are made.")
+		.def("validate",&ElasticWallMat::validate,
+			"ValueError naming the parameter if one is out of range; checked when parameters are set by "
+			"the constructor, and again when bonds are made.")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(ElasticWallMat, Material);
@@ -32,11 +38,13 @@ public:
 	virtual ~ElasticWallPhys() = default;
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(ElasticWallPhys, NormShearPhys,
-		"Contact of a sphere with a wall of :yref:`ElasticWallMat`. :yref:`ks<NormShearPhys.ks>` and :yref:`shearForce<NormShearPhys.shearForce>` are zero unless the sphere is bonded to it.",
+		"Contact of a sphere with a wall of :yref:`ElasticWallMat`. :yref:`ks<NormShearPhys.ks>` and "
+		":yref:`shearForce<NormShearPhys.shearForce>` are zero unless the sphere is bonded to it.",
 		((Real,wallStiffness,0,Attr::readonly,"Stiffness :math:`K` of the wall [Pa]"))
 		((Real,shearStiffness,0,Attr::readonly,"Stiffness :math:`K_s` along the wall [Pa], where bonded"))
 		((bool,bonded,false,Attr::readonly,"Whether the sphere is bonded to the wall"))
-		((Vector3r,bondedBranch,Vector3r::Zero(),(Attr::readonly|Attr::hidden),"From the wall's position to the sphere's when it was bonded [m]")),
+		((Vector3r,bondedBranch,Vector3r::Zero(),(Attr::readonly|Attr::hidden),
+			"From the wall's position to the sphere's when it was bonded [m]")),
 		createIndex();
 	);
 	// clang-format on
@@ -54,10 +62,13 @@ public:
 
 	FUNCTOR2D(ElasticWallMat, BondedMat);
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, IPhysFunctor, "Makes :yref:`ElasticWallPhys` where a wall meets a bonded particle.",
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, IPhysFunctor,
+		"Makes :yref:`ElasticWallPhys` where a wall meets a bonded particle.",
 		/*attrs*/, /*ctor*/,
-		.def("bond",&Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond,(boost::python::arg("wall"),boost::python::arg("spheres")),
-			"Bond spheres to a wall, given by their ids, where they are now, without load. Such a bond never breaks. ValueError, and nothing bonded, for bodies that are no wall of "
+		.def("bond",&Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond,(boost::python::arg("wall"),
+			boost::python::arg("spheres")),
+			"Bond spheres to a wall, given by their ids, where they are now, without load. Such a bond "
+			"never breaks. ValueError, and nothing bonded, for bodies that are no wall of "
 			":yref:`ElasticWallMat` or no spheres of :yref:`BondedMat`, or are bonded already.")
 	);
 	// clang-format on
@@ -72,10 +83,13 @@ public:
 	FUNCTOR2D(ScGeom, ElasticWallPhys);
 	// clang-format off
 	YADE_CLASS_BASE_DOC(Law2_ScGeom_ElasticWallPhys_Repulsion, LawFunctor,
-		"Repulsion of spheres by a :yref:`Wall`, :math:`F=\\pi r K (r-g)` along its normal while the centre's distance :math:`g` from it is less than the radius (ESyS-Particle's NRotElasticWall "
-		"[Weatherley2014]_). No friction, no moment. With :yref:`Wall.sense` set, a centre that has passed the wall is pushed back all the more; with sense 0 the wall acts on both sides.\n\n"
-		"A sphere that is bonded to the wall feels :math:`-\\pi r(K u_n+K_s u_t)` instead, of its displacement :math:`u` relative to the wall, in both directions, at its centre; it never breaks "
-		"(NRotBondedWall, where :math:`K_s=K`).\n\n"
+		"Repulsion of spheres by a :yref:`Wall`, :math:`F=\\pi r K (r-g)` along its normal while the centre's "
+		"distance :math:`g` from it is less than the radius (ESyS-Particle's NRotElasticWall "
+		"[Weatherley2014]_). No friction, no moment. With :yref:`Wall.sense` set, a centre that has passed the "
+		"wall is pushed back all the more; with sense 0 the wall acts on both sides.\n\n"
+		"A sphere that is bonded to the wall feels :math:`-\\pi r(K u_n+K_s u_t)` instead, of its displacement "
+		":math:`u` relative to the wall, in both directions, at its centre; it never breaks (NRotBondedWall, "
+		"where :math:`K_s=K`).\n\n"
 		"With :yref:`O.trackEnergy<Omega.trackEnergy>` it books *wallElastic* [J]."
 	);
 	// clang-format on

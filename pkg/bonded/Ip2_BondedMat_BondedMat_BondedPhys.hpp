@@ -17,12 +17,15 @@ public:
 	FUNCTOR2D(BondedMat, BondedMat);
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Ip2_BondedMat_BondedMat_BondedPhys, IPhysFunctor,
-		"Makes :yref:`BondedPhys` of two :yref:`BondedMat`. New interactions are frictional contacts; bonds exist only where :yref:`bond<Ip2_BondedMat_BondedMat_BondedPhys.bond>` "
-		"makes them, so a broken bond never heals.",
+		"Makes :yref:`BondedPhys` of two :yref:`BondedMat`. New interactions are frictional contacts; "
+		"bonds exist only where :yref:`bond<Ip2_BondedMat_BondedMat_BondedPhys.bond>` makes them, so a broken "
+		"bond never heals.",
 		/*attrs*/, /*ctor*/,
 		.def("bond",&Ip2_BondedMat_BondedMat_BondedPhys::bond,(boost::python::arg("pairs")),
-			"Bond pairs of spheres, given as a list of (id1, id2), at their present distance and orientation, without load. Needs no engines, and bonds need no help from the collider: "
-			"they exist until they break, whatever the gap. ValueError, and nothing bonded, if a pair is not of two different spheres of :yref:`BondedMat` or is bonded already.")
+			"Bond pairs of spheres, given as a list of (id1, id2), at their present distance and "
+			"orientation, without load. Needs no engines, and bonds need no help from the collider: "
+			"they exist until they break, whatever the gap. ValueError, and nothing bonded, if a pair is "
+			"not of two different spheres of :yref:`BondedMat` or is bonded already.")
 	);
 	// clang-format on
 };

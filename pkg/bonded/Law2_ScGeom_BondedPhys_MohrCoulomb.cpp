@@ -17,7 +17,9 @@ DDEM_PLUGIN((Law2_ScGeom_BondedPhys_MohrCoulomb))
 namespace {
 
 	/// Work per time of loads of a pair [W], with the velocities of the last half step.
-	Real pairPower(const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2, const State& state1, const State& state2)
+	Real pairPower(
+	        const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2, const State& state1,
+	        const State& state2)
 	{
 		return force.dot(state1.vel - state2.vel) + moment1.dot(state1.angVel) + moment2.dot(state2.angVel);
 	}
@@ -27,7 +29,9 @@ namespace {
 void Law2_ScGeom_BondedPhys_MohrCoulomb::postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&)
 {
 	if (convention != "consistent" && convention != "esys")
-		throw std::invalid_argument("Law2_ScGeom_BondedPhys_MohrCoulomb: convention = '" + convention + "' is unknown; use 'consistent' or 'esys'");
+		throw std::invalid_argument(
+		        "Law2_ScGeom_BondedPhys_MohrCoulomb: convention = '" + convention
+		        + "' is unknown; use 'consistent' or 'esys'");
 	esys = convention == "esys";
 	requireSingleProcess(); // in words here: what is thrown in the loop of InteractionLoop ends the program
 }
@@ -47,12 +51,14 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 		const ddem::BondStress last { phys.normalStress, phys.shearStress };
 		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return breakBond(*I, last);
 	}
-	const State &          state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
+	const State &state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
 	const Vector3r         branch = branchOf(*I), normal = branch.normalized();
-	const ddem::BondLoads  loads  = ddem::bondLoads(
-                bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+	const ddem::BondLoads loads = ddem::bondLoads(
+	        bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branch),
+	        ddem::rotation(state1.ori), ddem::rotation(state2.ori));
 	const ddem::BondStress stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
-	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None) return breakBond(*I, stress);
+	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None)
+		return breakBond(*I, stress);
 
 	const Vector3r force = ddem::eigenVector(loads.force);
 	phys.normalForce     = -force.dot(normal) * normal;
@@ -68,12 +74,14 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 {
 	const auto&           geom   = static_cast<const ScGeom&>(*I.geom);
 	auto&                 phys   = static_cast<BondedPhys&>(*I.phys);
-	const State &         state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
+	const State &state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
 	const Vector3r        branch = branchOf(I);
-	const ddem::BondLoads loads
-	        = ddem::bondLoads(bondConvention(), phys.bond(geom), ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
+	const ddem::BondLoads loads = ddem::bondLoads(
+	        bondConvention(), phys.bond(geom), ddem::spaceVector(branch), ddem::rotation(state1.ori),
+	        ddem::rotation(state2.ori));
 	const Real touching = geom.radius1 + geom.radius2;
-	// Where particles were bonded with an overlap it bears no load, before and after the bond breaks; ESyS-Particle's rest length is always the sum of the radii.
+	// Where particles were bonded with an overlap it bears no load, before and after the bond breaks;
+	// ESyS-Particle's rest length is always the sum of the radii.
 	phys.part(esys ? touching : math::min(touching, phys.bondLength));
 	const ddem::ContactLoads contact = contactLoadsOf(geom, phys, state1, state2, branch);
 
@@ -86,10 +94,14 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 	parted->tension      = ddem::failureMode(phys.strength(), stress) == ddem::BondFailure::Tension;
 	parted->normalStress = stress.normal;
 	parted->shearStress  = stress.shear;
-	// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the motion, so the jump of the loads counts half.
-	const Real bondPower = pairPower(ddem::eigenVector(loads.force), ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2), state1, state2);
+	// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the
+	// motion, so the jump of the loads counts half.
+	const Real bondPower = pairPower(
+	        ddem::eigenVector(loads.force), ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2),
+	        state1, state2);
 	const Real contactPower = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2);
-	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped + 0.5 * scene->dt * (bondPower - contactPower);
+	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped
+	        + 0.5 * scene->dt * (bondPower - contactPower);
 	record(parted);
 	applyContact(I, contact);
 	return branch.norm() < touching;
@@ -100,13 +112,17 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
 {
 	const Real                distance = branch.norm(), share = phys.contactReach / (geom.radius1 + geom.radius2);
 	const Vector3r            normal = branch / distance;
-	const ddem::ContactMotion motion { normal,        distance,     share * geom.radius1, share * geom.radius2, state2.vel - state1.vel,
-		                           state1.angVel, state2.angVel };
-	ddem::ContactMemory       memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
-                                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
+	const ddem::ContactMotion motion {
+		normal,        distance,     share * geom.radius1, share * geom.radius2, state2.vel - state1.vel,
+		state1.angVel, state2.angVel
+	};
+	ddem::ContactMemory memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
+		                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
 	const ddem::ContactLoads  loads = esys
 	         ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
-	         : ddem::contactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory, phys.contactDamping(state1.mass, state2.mass));
+	         : ddem::contactLoads(
+	                 { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
+	                 phys.contactDamping(state1.mass, state2.mass));
 	phys.contactNormal  = memory.normal;
 	phys.contactShear   = memory.shear;
 	phys.contactForce   = memory.force;
@@ -125,11 +141,13 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
 	const State &  state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
 	const Vector3r branch = branchOf(I);
 	applyContact(I, contactLoadsOf(geom, static_cast<BondedPhys&>(*I.phys), state1, state2, branch));
-	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the spheres touch, or a new contact would know nothing of that.
+	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the
+	// spheres touch, or a new contact would know nothing of that.
 	return branch.norm() < geom.radius1 + geom.radius2;
 }
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)
+void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(
+        const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)
 {
 	scene->forces.addForce(I.getId1(), force);
 	scene->forces.addForce(I.getId2(), -force);
@@ -186,7 +204,9 @@ long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const std::vector<int>& ids
 {
 	const std::set<int>               those(ids.begin(), ids.end());
 	const std::lock_guard<std::mutex> lock(recording);
-	return std::count_if(broken.begin(), broken.end(), [&those](const auto& bond) { return those.count(bond->id1) && those.count(bond->id2); });
+	return std::count_if(broken.begin(), broken.end(), [&those](const auto& bond) {
+		return those.count(bond->id1) && those.count(bond->id2);
+	});
 }
 
 boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
@@ -201,7 +221,9 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 		all.clear();
 		for (const auto& I : *current->interactions) {
 			const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
-			if (phys && phys->bonded) all[std::minmax(I->getId1(), I->getId2())] = { phys->normalStress, phys->shearStress, phys->bondRadius };
+			if (phys && phys->bonded)
+				all[std::minmax(I->getId1(), I->getId2())]
+				        = { phys->normalStress, phys->shearStress, phys->bondRadius };
 		}
 	}
 	std::vector<Vector2i> ids;
@@ -257,13 +279,15 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 {
 	const Scene&                                     scene = *Omega::instance().getScene();
-	std::vector<int>                                 place(scene.bodies->size(), -1); // bodies that cannot move stay -1
+	// bodies that cannot move stay -1
+	std::vector<int>                                 place(scene.bodies->size(), -1);
 	std::vector<ddem::ParticleMass>                  particles;
 	std::vector<ddem::PairSpring>                    springs, dampers;
 	std::vector<std::pair<const Wall*, const Body*>> walls;
 	for (const auto& body : *scene.bodies) {
 		if (!body) continue;
-		if (const auto* wall = dynamic_cast<const Wall*>(body->shape.get())) walls.emplace_back(wall, body.get());
+		if (const auto* wall = dynamic_cast<const Wall*>(body->shape.get()))
+			walls.emplace_back(wall, body.get());
 		if (body->state->blockedDOFs == State::DOF_ALL || !(body->state->mass > 0)) continue;
 		place[size_t(body->id)] = int(particles.size());
 		particles.push_back({ body->state->mass, body->state->inertia.minCoeff() });
@@ -275,11 +299,16 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 		if (!phys || !I->geom) continue;
 		const auto&      geom  = static_cast<const ScGeom&>(*I->geom);
 		const Real       share = phys->contactReach / (geom.radius1 + geom.radius2);
-		ddem::PairSpring spring { place[size_t(I->getId1())], place[size_t(I->getId2())], phys->kn, phys->ks, 0, 0,
-			                  share * geom.radius1,       share * geom.radius2 };
-		if (phys->normalDamping > 0 || phys->shearDamping > 0) { // of the contact that is there or that a broken bond leaves
-			const auto damping = phys->contactDamping((*scene.bodies)[I->getId1()]->state->mass, (*scene.bodies)[I->getId2()]->state->mass);
-			dampers.push_back({ spring.first, spring.second, damping.normal, damping.shear, 0, 0, spring.arm1, spring.arm2 });
+		ddem::PairSpring spring {
+			place[size_t(I->getId1())], place[size_t(I->getId2())], phys->kn, phys->ks, 0, 0,
+			share * geom.radius1,       share * geom.radius2
+		};
+		// of the contact that is there or that a broken bond leaves
+		if (phys->normalDamping > 0 || phys->shearDamping > 0) {
+			const auto damping = phys->contactDamping(
+			        (*scene.bodies)[I->getId1()]->state->mass, (*scene.bodies)[I->getId2()]->state->mass);
+			dampers.push_back({ spring.first, spring.second, damping.normal, damping.shear, 0, 0,
+			                    spring.arm1, spring.arm2 });
 		}
 		if (phys->bonded) {
 			spring.bending = phys->kb;
@@ -294,8 +323,11 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 		for (const auto& body : *scene.bodies) {
 			const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
 			if (!sphere || !dynamic_cast<const BondedMat*>(body->material.get())) continue;
-			if (math::abs(body->state->pos[wall->axis] - wallBody->state->pos[wall->axis]) > 2 * sphere->radius) continue;
-			springs.push_back({ place[size_t(body->id)], -1, ddem::wallSpring(sphere->radius, material->stiffness), 0, 0, 0, 0, 0 });
+			if (math::abs(body->state->pos[wall->axis] - wallBody->state->pos[wall->axis])
+			    > 2 * sphere->radius)
+				continue;
+			springs.push_back({ place[size_t(body->id)], -1,
+			                    ddem::wallSpring(sphere->radius, material->stiffness), 0, 0, 0, 0, 0 });
 		}
 	}
 	return ddem::dampedStableStep(ddem::stableStep(particles, springs), ddem::stableStep(particles, dampers));

@@ -17,8 +17,12 @@ public:
 	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
 	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
 
-	ddem::BondConvention bondConvention() const { return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent; }
-	/// Replaces a bond that has failed under these stresses by a contact, which acts at once, and records it. \returns whether the spheres touch
+	ddem::BondConvention bondConvention() const
+	{
+		return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent;
+	}
+	/// Replaces a bond that has failed under these stresses by a contact, which acts at once,
+	/// and records it. \returns whether the spheres touch
 	bool breakBond(Interaction& I, const ddem::BondStress& stress);
 	/// Adds stored energy to the book.
 	void bookBondEnergy(Real stored) { energy.add(*scene->energy, BondedEnergy::BondElastic, stored); }
@@ -39,28 +43,50 @@ public:
 	FUNCTOR2D(ScGeom, BondedPhys);
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Law2_ScGeom_BondedPhys_MohrCoulomb, LawFunctor,
-		"Forces and moments of bonds, their failure, and friction of pairs that are not or no longer bonded, after the bonds of ESyS-Particle [Wang2009]_ [Weatherley2014]_.\n\n"
-		"**Bond.** A round beam of radius :math:`R=d_0/2` between the centres, :math:`d_0` apart when it was made, with stiffnesses :math:`EA/d_0` (normal), :math:`GA/d_0` (shear), "
-		":math:`EI/d_0` (bending), :math:`GJ/d_0` (torsion). Loads follow from positions and orientations, not from increments: one element of the geometrically exact beam [Simo1985]_ with one "
-		"integration point. They derive from an energy, so the bond is exactly conservative, for unequal radii and large rotations too. The rest length is :math:`d_0`.\n\n"
-		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the "
-		"tension limit (see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
-		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending "
-		"moment, rest length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii (the stiffness is not symmetric: a sample left alone slowly begins to shake, at any time step), failure one step later, friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
-		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the first slip and a dynamic one from then on. A bond of spheres that touched and that breaks under compression keeps "
-		"its normal force; its tangential force starts from zero. Gradual friction and viscous damping are options of :yref:`BondedMat`.\n\n"
-		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* (dissipated) [J].\n\n"
-		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast as one by one in an :yref:`InteractionLoop`.\n\n"
-		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as well, its relative rotations are not used.\n\n"
+		"Forces and moments of bonds, their failure, and friction of pairs that are not or no longer bonded, "
+		"after the bonds of ESyS-Particle [Wang2009]_ [Weatherley2014]_.\n\n"
+		"**Bond.** A round beam of radius :math:`R=d_0/2` between the centres, :math:`d_0` apart when it was "
+		"made, with stiffnesses :math:`EA/d_0` (normal), :math:`GA/d_0` (shear), :math:`EI/d_0` (bending), "
+		":math:`GJ/d_0` (torsion). Loads follow from positions and orientations, not from increments: "
+		"one element of the geometrically exact beam [Simo1985]_ with one integration point. They derive from "
+		"an energy, so the bond is exactly conservative, for unequal radii and large rotations too. The rest "
+		"length is :math:`d_0`.\n\n"
+		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in "
+		"the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the tension limit "
+		"(see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
+		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds "
+		"and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending moment, rest "
+		"length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii (the stiffness is not "
+		"symmetric: a sample left alone slowly begins to shake, at any time step), failure one step later, "
+		"friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
+		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the "
+		"first slip and a dynamic one from then on. A bond of spheres that touched and that breaks under "
+		"compression keeps its normal force; its tangential force starts from zero. Gradual friction and "
+		"viscous damping are options of :yref:`BondedMat`.\n\n"
+		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now "
+		"stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* "
+		"(dissipated) [J].\n\n"
+		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast "
+		"as one by one in an :yref:`InteractionLoop`.\n\n"
+		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as "
+		"well, its relative rotations are not used.\n\n"
 		"**Saving.** Bonds and the list of broken bonds are saved with the scene. "
-		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it refuses to be made, loaded or run.",
-		((std::string,convention,"consistent",Attr::triggerPostLoad,"'consistent', or 'esys' for the bonds and contacts of ESyS-Particle; to be chosen before the first step"))
-		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),"Records of broken bonds, in order of step and ids")),
+		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it "
+		"refuses to be made, loaded or run.",
+		((std::string,convention,"consistent",Attr::triggerPostLoad,
+			"'consistent', or 'esys' for the bonds and contacts of ESyS-Particle; to be chosen before the "
+			"first step"))
+		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),
+			"Records of broken bonds, in order of step and ids")),
 		/*ctor*/,
-		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
+		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,
+			"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
 		.def("brokenCount",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount,"Number of broken bonds.")
-		.def("brokenAmong",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong,(boost::python::arg("ids")),"Number of broken bonds between bodies of a list of ids.")
-		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), *normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
+		.def("brokenAmong",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong,(boost::python::arg("ids")),
+			"Number of broken bonds between bodies of a list of ids.")
+		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,
+			"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), "
+			"*normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
 		.def("largestStresses",&Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses,
 			"Largest stress that each part of its load makes in any bond that holds, at the present "
 			"positions, as a dictionary [Pa]: *tension* :math:`|F_n|/A` (either sign), "
@@ -70,8 +96,12 @@ public:
 			"Bytes that YADE's objects for a bond take: its Interaction, geometry and physics, without the "
 			"arrays of a :yref:`BondedInteractionLoop`.")
 		.staticmethod("bytesPerBond")
-		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for its elastic walls: :math:`2/\\omega` of the worst pair, each "
-			"particle's mass shared out between its springs; about a tenth below the exact value. That holds for small overlaps and the consistent convention; the stiffness of the other one is not symmetric. Infinite without springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
+		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,
+			"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for "
+			"its elastic walls: :math:`2/\\omega` of the worst pair, each particle's mass shared out "
+			"between its springs; about a tenth below the exact value. That holds for small overlaps and "
+			"the consistent convention; the stiffness of the other one is not symmetric. Infinite without "
+			"springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
 		.staticmethod("criticalTimeStep")
 	);
 	// clang-format on
@@ -79,7 +109,9 @@ public:
 private:
 	/// One step of the contact that a pair has instead of a bond. \returns whether the spheres touch
 	bool advanceContact(Interaction& I);
-	ddem::ContactLoads contactLoadsOf(const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch) const;
+	ddem::ContactLoads contactLoadsOf(
+	        const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2,
+	        const Vector3r& branch) const;
 	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);

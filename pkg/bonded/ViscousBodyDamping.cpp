@@ -10,8 +10,9 @@ DDEM_PLUGIN((ViscousBodyDamping))
 namespace {
 
 	/// Damping loads of one motion; none where it is blocked.
-	Vector3r
-	dragLoad(const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass, const State& state, bool rotation)
+	Vector3r dragLoad(
+	        const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass,
+	        const State& state, bool rotation)
 	{
 		Vector3r drag;
 		for (int axis = 0; axis < 3; axis++)
@@ -23,12 +24,14 @@ namespace {
 	}
 
 	/// What they take away [J].
-	Real
-	dragLoss(const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass, const State& state, bool rotation)
+	Real dragLoss(
+	        const ddem::ViscousDamper& damper, const Vector3r& velocity, const Vector3r& load, const Vector3r& mass,
+	        const State& state, bool rotation)
 	{
 		Real loss = 0;
 		for (int axis = 0; axis < 3; axis++)
-			if (!(state.blockedDOFs & State::axisDOF(axis, rotation))) loss += damper.loss(velocity[axis], load[axis], mass[axis]);
+			if (!(state.blockedDOFs & State::axisDOF(axis, rotation)))
+				loss += damper.loss(velocity[axis], load[axis], mass[axis]);
 		return loss;
 	}
 
@@ -36,9 +39,12 @@ namespace {
 
 void ViscousBodyDamping::postLoad(ViscousBodyDamping&)
 {
-	for (const auto& [name, value] : { std::make_pair("viscosity", viscosity), std::make_pair("rotationalViscosity", rotationalViscosity) })
+	for (const auto& [name, value] :
+	     { std::make_pair("viscosity", viscosity), std::make_pair("rotationalViscosity", rotationalViscosity) })
 		if (!(value >= 0) || !std::isfinite(value))
-			throw std::invalid_argument("ViscousBodyDamping: " + std::string(name) + " = " + std::to_string(value) + " 1/s must not be negative");
+			throw std::invalid_argument(
+			        "ViscousBodyDamping: " + std::string(name) + " = " + std::to_string(value)
+			        + " 1/s must not be negative");
 }
 
 const NewtonIntegrator& ViscousBodyDamping::checkedIntegrator() const
@@ -47,12 +53,13 @@ const NewtonIntegrator& ViscousBodyDamping::checkedIntegrator() const
 	for (const auto& engine : scene->engines) {
 		if (engine.get() == this) seen = true;
 		else if (seen && dynamic_cast<const InteractionLoop*>(engine.get()))
-			throw std::runtime_error("wrong order in O.engines: ViscousBodyDamping comes before InteractionLoop and would miss its forces; put it "
-			                         "right before NewtonIntegrator");
+			throw std::runtime_error("wrong order in O.engines: ViscousBodyDamping comes before "
+			                         "InteractionLoop and would miss its forces; put it right before "
+			                         "NewtonIntegrator");
 		else if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(engine.get())) {
 			if (!seen)
-				throw std::runtime_error(
-				        "wrong order in O.engines: ViscousBodyDamping comes after NewtonIntegrator, so it has no effect; put it right before");
+				throw std::runtime_error("wrong order in O.engines: ViscousBodyDamping comes after "
+				                         "NewtonIntegrator, so it has no effect; put it right before");
 			return *newton;
 		}
 	}
@@ -71,13 +78,18 @@ void ViscousBodyDamping::action()
 #pragma omp parallel for schedule(static) reduction(+ : loss)
 	for (long id = 0; id < size; id++) {
 		const Body* body = bodies[int(id)].get();
-		if (!body || body->isClumpMember() || body->isClump() || (mask > 0 && !body->maskCompatible(mask))) continue;
+		if (!body || body->isClumpMember() || body->isClump() || (mask > 0 && !body->maskCompatible(mask)))
+			continue;
 		const State& state = *body->state;
 		if (state.blockedDOFs == State::DOF_ALL) continue;
-		const Vector3r force = scene->forces.getForce(int(id)), torque = scene->forces.getTorque(int(id)), mass = Vector3r::Constant(state.mass);
+		const Vector3r force = scene->forces.getForce(int(id)), torque = scene->forces.getTorque(int(id)),
+		               mass = Vector3r::Constant(state.mass);
 		scene->forces.addForceUnsynced(int(id), dragLoad(linear, state.vel, force, mass, state, false));
-		scene->forces.addTorqueUnsynced(int(id), dragLoad(angular, state.angVel, torque, state.inertia, state, true));
-		if (book) loss += dragLoss(linear, state.vel, force, mass, state, false) + dragLoss(angular, state.angVel, torque, state.inertia, state, true);
+		scene->forces.addTorqueUnsynced(
+		        int(id), dragLoad(angular, state.angVel, torque, state.inertia, state, true));
+		if (book)
+			loss += dragLoss(linear, state.vel, force, mass, state, false)
+			        + dragLoss(angular, state.angVel, torque, state.inertia, state, true);
 	}
 	if (!book) return;
 	// Half of this step's loss comes after the present positions; see RampedTranslationEngine.

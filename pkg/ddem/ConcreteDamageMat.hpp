@@ -14,15 +14,15 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(ConcreteDamageMat, DeformableElastMat,
-		"Concrete of :yref:`DeformableTriangle`: viscoplastic Mohr-Coulomb flow, tensorial damage, degradation of elasticity, "
-		"equation of state [Zubelewicz2018]_, section 3. Defaults are the report's Tables 1 and 2: a high-strength concrete, about "
-		"91 MPa in compression and 10 MPa in tension at 1/s.\n\n"
-		"An effect that is switched off is not evaluated. Three things are not printed in the report and closed here so that its "
-		"Table 2, unchanged, gives its strengths: the strain rate of eq. 7 is "
+		"Concrete of :yref:`DeformableTriangle`: viscoplastic Mohr-Coulomb flow, tensorial damage, degradation "
+		"of elasticity, equation of state [Zubelewicz2018]_, section 3. Defaults are the report's Tables 1 and "
+		"2: a high-strength concrete, about 91 MPa in compression and 10 MPa in tension at 1/s.\n\n"
+		"An effect that is switched off is not evaluated. Three things are not printed in the report and "
+		"closed here so that its Table 2, unchanged, gives its strengths: the strain rate of eq. 7 is "
 		":math:`\\dot e_N=\\sqrt{\\dot\\varepsilon:\\dot\\varepsilon/2}`, friction decays as "
 		":math:`q_D=q_0(1+\\langle p\\rangle/p_{q0})^{-n_q}`, and equal principal stresses share the flow.\n\n"
-		"Limits: small strain in the element's frame; fracture energy is per volume, so the energy of a crack scales with the "
-		"size of the elements.",
+		"Limits: small strain in the element's frame; fracture energy is per volume, so the energy of a crack "
+		"scales with the size of the elements.",
 		CONCRETE_PARAMETERS(DDEM_ATTRIBUTE) CONCRETE_EFFECTS(DDEM_SWITCH),
 		createIndex(); takeElasticityOfLaw();
 	);

@@ -10,7 +10,10 @@ namespace yade {
 
 DDEM_PLUGIN((DeformableElastMat))
 
-std::string DeformableElastMat::where() const { return getClassName() + (label.empty() ? "" : " '" + label + "'") + ": "; }
+std::string DeformableElastMat::where() const
+{
+	return getClassName() + (label.empty() ? "" : " '" + label + "'") + ": ";
+}
 
 void DeformableElastMat::requirePositive(const char* name, Real value, const char* unit) const
 {
@@ -34,9 +37,12 @@ void DeformableElastMat::validate() const
 	requirePositive("density", density, "kg/m³");
 	std::ostringstream text;
 	if (!(poisson > -1 && poisson < 0.5))
-		text << where() << "poisson = " << poisson << " must lie between -1 and 0.5; at 0.5 the material is incompressible and the stable time step is zero (use 0.499 at most)";
+		text << where() << "poisson = " << poisson
+		     << " must lie between -1 and 0.5; at 0.5 the material is incompressible and the stable time step "
+		        "is zero (use 0.499 at most)";
 	else if (!(rotationStiffness >= 0 && std::isfinite(rotationStiffness)))
-		text << where() << "rotationStiffness = " << rotationStiffness << " must be zero or positive (2 in the report)";
+		text << where() << "rotationStiffness = " << rotationStiffness
+		     << " must be zero or positive (2 in the report)";
 	if (!text.str().empty()) throw std::invalid_argument(text.str());
 	try {
 		law().check(); // what else the law asks of its parameters
@@ -87,7 +93,10 @@ void DeformableElastMat::pyHandleCustomCtorArgs(boost::python::tuple& /*args*/, 
 	const bool hasBulk = kw.has_key("bulk"), hasShear = kw.has_key("shear");
 	if (!hasBulk && !hasShear) return;
 	if (!hasBulk || !hasShear || kw.has_key("young") || kw.has_key("poisson"))
-		throw std::invalid_argument(getClassName() + ": give the elasticity either as bulk and shear [Pa] or as young [Pa] and poisson [-], both numbers of one pair");
+		throw std::invalid_argument(
+		        getClassName()
+		        + ": give the elasticity either as bulk and shear [Pa] or as young [Pa] and poisson [-], both "
+		          "numbers of one pair");
 	setModuli(boost::python::extract<Real>(kw["bulk"]), boost::python::extract<Real>(kw["shear"]));
 	boost::python::delitem(kw, boost::python::object("bulk"));
 	boost::python::delitem(kw, boost::python::object("shear"));

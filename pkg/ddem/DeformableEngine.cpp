@@ -36,7 +36,8 @@ ddem::RotationTreatment DeformableEngine::rotationTreatment() const
 	if (rotation == "cosserat") return ddem::RotationTreatment::Cosserat;
 	if (rotation == "corotational") return ddem::RotationTreatment::Corotational;
 	if (rotation == "none") return ddem::RotationTreatment::None;
-	throw std::invalid_argument("DeformableEngine.rotation = '" + rotation + "' is unknown; use 'cosserat', 'corotational' or 'none'");
+	throw std::invalid_argument(
+	        "DeformableEngine.rotation = '" + rotation + "' is unknown; use 'cosserat', 'corotational' or 'none'");
 }
 
 SampleSettings DeformableEngine::settings(const Scene& of) const
@@ -52,7 +53,8 @@ SampleSettings DeformableEngine::settings(const Scene& of) const
 		if (other == this) continue;
 		if (other->groupMask & groupMask)
 			throw std::invalid_argument(
-			        "O.engines has two DeformableEngine with the same bit, groupMask = " + std::to_string(groupMask)
+			        "O.engines has two DeformableEngine with the same bit, groupMask = "
+			        + std::to_string(groupMask)
 			        + "; give each a bit of its own, for instance groupMask = 1<<21");
 		s.otherBits |= other->groupMask;
 		s.otherIds.insert(s.otherIds.end(), other->ids.begin(), other->ids.end());
@@ -65,11 +67,15 @@ void DeformableEngine::postLoad(DeformableEngine&)
 {
 	rotationTreatment();
 	if (inverted != "stop" && inverted != "warn")
-		throw std::invalid_argument("DeformableEngine.inverted = '" + inverted + "' is unknown; use 'stop' or 'warn'");
+		throw std::invalid_argument(
+		        "DeformableEngine.inverted = '" + inverted + "' is unknown; use 'stop' or 'warn'");
 	if (flowInterval < 1)
 		throw std::invalid_argument(
-		        "DeformableEngine.flowInterval = " + std::to_string(flowInterval) + " steps must be at least 1 (1: flow in every step)");
-	if (groupMask <= 0) throw std::invalid_argument("DeformableEngine.groupMask = " + std::to_string(groupMask) + " must be a positive bit mask");
+		        "DeformableEngine.flowInterval = " + std::to_string(flowInterval)
+		        + " steps must be at least 1 (1: flow in every step)");
+	if (groupMask <= 0)
+		throw std::invalid_argument(
+		        "DeformableEngine.groupMask = " + std::to_string(groupMask) + " must be a positive bit mask");
 	stale = true; // read anew at the next step; the state is kept
 }
 
@@ -81,8 +87,9 @@ StateStore DeformableEngine::stateToCarry(const Scene& of) const
 		if (savedVersion != stateVersion)
 			throw std::runtime_error(
 			        "the scene was saved with version " + std::to_string(savedVersion)
-			        + " of the state of deformable triangles" + (savedVersion == 2 ? " (plugin 0.1.0)" : "") + "; this plugin reads version "
-			        + std::to_string(stateVersion) + ": load it with the plugin that saved it");
+			        + " of the state of deformable triangles" + (savedVersion == 2 ? " (plugin 0.1.0)" : "")
+			        + "; this plugin reads version " + std::to_string(stateVersion)
+			        + ": load it with the plugin that saved it");
 		return StateStore::fromSaved({ savedFields, savedState });
 	}
 	return storeOfFormerEngines(of, trianglesOf(of, settings(of)));
@@ -110,14 +117,24 @@ void DeformableEngine::readIfNeeded(Scene& of)
 	savedVersion = 0;
 	stale        = false;
 	const auto& groups = sample->system->group;
-	guard.restart(std::any_of(groups.begin(), groups.end(), [](const ddem::GroupPointer& g) { return g->stiffensInRuns(); }));
+	guard.restart(std::any_of(
+	        groups.begin(), groups.end(), [](const ddem::GroupPointer& g) { return g->stiffensInRuns(); }));
 	EngineOrder::maskIntegrators(of, groupMask);
 	for (const std::string& name : sample->forgotten)
 		if (!of.trackEnergy || !std::set<std::string> { "lastStress" }.count(name))
-			LOG_WARN("no law of these triangles remembers '" << name << "' any more, since an effect was switched off or the law changed: what it was is lost");
+			LOG_WARN(
+			        "no law of these triangles remembers '"
+			        << name
+			        << "' any more, since an effect was switched off or the law changed: what it was is "
+			           "lost");
 	for (const auto& b : sample->cores)
-		if (rotation == "cosserat" && static_cast<const DeformableElastMat&>(*b->material).rotationStiffness < 1e-3) {
-			LOG_WARN("rotationStiffness of material '" << b->material->label << "' is below 1e-3: cores are tied to their vertices by it, and a free core lets go of tension; use rotation='corotational' for a classic continuum");
+		if (rotation == "cosserat"
+		    && static_cast<const DeformableElastMat&>(*b->material).rotationStiffness < 1e-3) {
+			LOG_WARN(
+			        "rotationStiffness of material '"
+			        << b->material->label
+			        << "' is below 1e-3: cores are tied to their vertices by it, and a free core lets go "
+			           "of tension; use rotation='corotational' for a classic continuum");
 			break;
 		}
 }
@@ -150,9 +167,13 @@ shared_ptr<Exposure> DeformableEngine::currentOf(const shared_ptr<Exposure>& sam
 Exposure& DeformableEngine::current()
 {
 	Scene&     now  = *Omega::instance().getScene();
-	const bool mine = std::any_of(now.engines.begin(), now.engines.end(), [this](const shared_ptr<Engine>& e) { return e.get() == this; });
+	const bool mine = std::any_of(now.engines.begin(), now.engines.end(), [this](const shared_ptr<Engine>& e) {
+		return e.get() == this;
+	});
 	if (!mine && sample) return *sample; // of a scene that is gone, or an engine taken out of it
-	if (!mine) throw std::runtime_error("this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
+	if (!mine)
+		throw std::runtime_error(
+		        "this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
 	readIfNeeded(now);
 	if (Omega::instance().isRunning()) return *sample;
 	if (sample->shown == Shown::All)
@@ -167,17 +188,20 @@ void DeformableEngine::checkStart() const
 	// velocities given to all nodes of a sample and to none of its cores, which have most of the mass
 	const ddem::Motion& m = sample->system->motion;
 	for (std::size_t i = 0; i < sample->cores.size(); i++) {
-		if (m.core.velocity[2 * i] != 0 || m.core.velocity[2 * i + 1] != 0 || m.core.inverseMass[2 * i] == 0) return;
+		if (m.core.velocity[2 * i] != 0 || m.core.velocity[2 * i + 1] != 0 || m.core.inverseMass[2 * i] == 0)
+			return;
 		for (const auto& list : sample->system->topology.vertex) {
 			const auto first = std::size_t(sample->system->topology.vertex[0][i]), v = std::size_t(list[i]);
 			for (std::size_t c = 0; c < 2; c++)
-				if (m.node.velocity[2 * v + c] != m.node.velocity[2 * first + c] || m.node.inverseMass[2 * v + c] == 0) return;
+				if (m.node.velocity[2 * v + c] != m.node.velocity[2 * first + c]
+				    || m.node.inverseMass[2 * v + c] == 0)
+					return;
 			if (m.node.velocity[2 * v] == 0 && m.node.velocity[2 * v + 1] == 0) return;
 		}
 	}
 	std::ostringstream text;
-	text << "all nodes have a velocity, (" << m.node.velocity[0] << ", " << m.node.velocity[1]
-	     << ") m/s at " << placeOf(*sample->nodes[0]) << ", and no triangle core has one; cores have " << 1 - vertexShare
+	text << "all nodes have a velocity, (" << m.node.velocity[0] << ", " << m.node.velocity[1] << ") m/s at "
+	     << placeOf(*sample->nodes[0]) << ", and no triangle core has one; cores have " << 1 - vertexShare
 	     << " of the mass: give the whole block its velocity, block.velocity = (vx, vy)";
 	throw std::runtime_error(text.str());
 }
@@ -258,7 +282,8 @@ void DeformableEngine::stopAtNotFinite()
 {
 	const auto         place = sample->system->motion.firstNotFinite();
 	std::ostringstream text;
-	text << "DeformableEngine: the state became infinite or not a number in step " << scene->iter << ", t = " << scene->time << " s";
+	text << "DeformableEngine: the state became infinite or not a number in step " << scene->iter
+	     << ", t = " << scene->time << " s";
 	if (place.found)
 		text << ", first at " << (place.isNode ? "node " : "triangle ")
 		     << placeOf(place.isNode ? *sample->nodes[place.index] : *sample->cores[place.index]);
@@ -281,7 +306,7 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 	book.add(e.dampingLoss, "nonviscDamp", ids_[7], false);
 }
 
-// ---- saving --------------------------------------------------------------------------------------------------------------------
+// ---- saving ---------------------------------------------------------------------------------------------------------
 
 void DeformableEngine::preSave(DeformableEngine&)
 {
@@ -301,7 +326,7 @@ void DeformableEngine::postSave(DeformableEngine&)
 	std::vector<Real>().swap(savedState);
 }
 
-// ---- what Python sees ------------------------------------------------------------------------------------------------------------
+// ---- what Python sees -----------------------------------------------------------------------------------------------
 
 Real DeformableEngine::criticalTimeStep() { return current().timeStep().step; }
 

@@ -12,8 +12,10 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR(DeformableNode, Shape,
-		"External node of :yref:`DeformableTriangle`: a point with mass, shared by all triangles that meet there, moved by :yref:`DeformableEngine` in the xy plane. "
-		"Its reference position [m] is :yref:`State.refPos`, where its triangles are free of stress. Fix or drive it by :yref:`State.blockedDOFs` and :yref:`State.vel`.",
+		"External node of :yref:`DeformableTriangle`: a point with mass, shared by all triangles that meet "
+		"there, moved by :yref:`DeformableEngine` in the xy plane. Its reference position [m] is "
+		":yref:`State.refPos`, where its triangles are free of stress. Fix or drive it by "
+		":yref:`State.blockedDOFs` and :yref:`State.vel`.",
 		,
 		createIndex();
 	);

@@ -15,11 +15,12 @@ shared_ptr<Exposure> DeformableTriangle::current() const
 	if (const auto known = DeformableEngine::currentOf(exposure.lock(), row)) return known;
 	DeformableEngine::readScene(); // not read yet
 	if (const auto known = DeformableEngine::currentOf(exposure.lock(), row)) return known;
-	throw std::runtime_error(
-	        "this DeformableTriangle has no state: it is not in the scene (O.bodies), or no DeformableEngine in O.engines takes it");
+	throw std::runtime_error("this DeformableTriangle has no state: it is not in the scene (O.bodies), or no "
+	                         "DeformableEngine in O.engines takes it");
 }
 
-boost::python::list DeformableTriangle::globalTensors(const Exposure& in, const std::array<ddem::PlaneTensor, 3>& tensors) const
+boost::python::list
+DeformableTriangle::globalTensors(const Exposure& in, const std::array<ddem::PlaneTensor, 3>& tensors) const
 {
 	const Real          angle = in.system->frameAngle(row);
 	boost::python::list result;

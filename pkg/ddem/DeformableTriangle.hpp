@@ -28,8 +28,8 @@ public:
 
 		bool operator==(const Values& o) const
 		{
-			return thickness == o.thickness && fractureEnergy == o.fractureEnergy && bandFactor == o.bandFactor
-			        && initialDamage == o.initialDamage;
+			return thickness == o.thickness && fractureEnergy == o.fractureEnergy
+			        && bandFactor == o.bandFactor && initialDamage == o.initialDamage;
 		}
 	};
 	Values values() const { return { thickness, fractureEnergy, bandFactor, initialDamage }; }
@@ -47,22 +47,39 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(DeformableTriangle, Shape,
-		"Deformable triangle of plane strain [Zubelewicz2018]_: its body is the rigid core (translation and rotation of the mass centre), three :yref:`DeformableNode` bodies are its "
-		"vertices, and the interior in between deforms by shape functions in three sub-elements (centre, vertex k, vertex k+1). Moved by :yref:`DeformableEngine`, which also "
-		"keeps stress and damage; what is read here is always the current state.\n\n"
+		"Deformable triangle of plane strain [Zubelewicz2018]_: its body is the rigid core (translation and "
+		"rotation of the mass centre), three :yref:`DeformableNode` bodies are its vertices, and the interior "
+		"in between deforms by shape functions in three sub-elements (centre, vertex k, vertex k+1). Moved by "
+		":yref:`DeformableEngine`, which also keeps stress and damage; what is read here is always the current "
+		"state.\n\n"
 		"Tensors are in global axes, one per sub-element, tension positive.",
-		((Vector3i,nodes,Vector3i(-1,-1,-1),,"Ids of the three node bodies, counter-clockwise in the xy plane."))
+		((Vector3i,nodes,Vector3i(-1,-1,-1),,
+			"Ids of the three node bodies, counter-clockwise in the xy plane."))
 		((Real,thickness,1,Attr::triggerPostLoad,"Thickness [m] of the plane-strain slice."))
-		((Real,fractureEnergy,-1,Attr::triggerPostLoad,"This triangle's own fracture energy :math:`G_f`, in the unit of its material's (J/m³ for :yref:`ConcreteDamageMat`, J/m² for :yref:`ScalarDamageMat`); negative: the material's."))
-		((Real,bandFactor,1,Attr::triggerPostLoad,"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above 0.5), from the crack band: ddem.append(crack_band=)."))
-		((Matrix3r,initialDamage,Matrix3r::Zero(),Attr::triggerPostLoad,"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the reference axes; components xz and yz must be zero.")),
+		((Real,fractureEnergy,-1,Attr::triggerPostLoad,
+			"This triangle's own fracture energy :math:`G_f`, in the unit of its material's (J/m³ for "
+			":yref:`ConcreteDamageMat`, J/m² for :yref:`ScalarDamageMat`); negative: the material's."))
+		((Real,bandFactor,1,Attr::triggerPostLoad,
+			"Factor [-] on the fracture energy once flow has localised (damage :math:`\\Omega_D` above "
+			"0.5), from the crack band: ddem.append(crack_band=)."))
+		((Matrix3r,initialDamage,Matrix3r::Zero(),Attr::triggerPostLoad,
+			"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the "
+			"reference axes; components xz and yz must be zero.")),
 		createIndex();,
-		.add_property("stress",&DeformableTriangle::stress,"Stress [Pa] of the three sub-elements, list of Matrix3.")
-		.add_property("strain",&DeformableTriangle::strain,"Strain [-] of the three sub-elements, list of Matrix3.")
-		.add_property("plasticStrain",&DeformableTriangle::plasticStrain,"Plastic strain [-] of the three sub-elements, list of Matrix3; zero in elastic triangles.")
-		.add_property("damageTensor",&DeformableTriangle::damageTensor,"Damage tensor :math:`\\Omega` [-] of the three sub-elements, list of Matrix3; zero in elastic triangles.")
-		.add_property("damage",&DeformableTriangle::damage,"Damage :math:`\\eta/\\eta_{max}` [-], mean of the three sub-elements: 0 intact, 1 broken.")
-		.add_property("rotation",&DeformableTriangle::rotation,"Rotation [rad] of the element's frame about z, counter-clockwise; counts full turns where cores rotate ('cosserat').")
+		.add_property("stress",&DeformableTriangle::stress,
+			"Stress [Pa] of the three sub-elements, list of Matrix3.")
+		.add_property("strain",&DeformableTriangle::strain,
+			"Strain [-] of the three sub-elements, list of Matrix3.")
+		.add_property("plasticStrain",&DeformableTriangle::plasticStrain,
+			"Plastic strain [-] of the three sub-elements, list of Matrix3; zero in elastic triangles.")
+		.add_property("damageTensor",&DeformableTriangle::damageTensor,
+			"Damage tensor :math:`\\Omega` [-] of the three sub-elements, list of Matrix3; zero in elastic "
+			"triangles.")
+		.add_property("damage",&DeformableTriangle::damage,
+			"Damage :math:`\\eta/\\eta_{max}` [-], mean of the three sub-elements: 0 intact, 1 broken.")
+		.add_property("rotation",&DeformableTriangle::rotation,
+			"Rotation [rad] of the element's frame about z, counter-clockwise; counts full turns where "
+			"cores rotate ('cosserat').")
 		.add_property("area",&DeformableTriangle::area,"Area [m²] in the reference state.")
 	);
 	// clang-format on

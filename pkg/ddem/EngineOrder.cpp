@@ -18,7 +18,15 @@ namespace {
 	/// Engines that neither look at deformable bodies nor add forces to them.
 	bool isQuiet(const Engine& engine)
 	{
-		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper", "DeformableEngine" };
+		static const std::set<std::string> names { "ForceResetter",
+			                                   "NewtonIntegrator",
+			                                   "InsertionSortCollider",
+			                                   "InteractionLoop",
+			                                   "BondedInteractionLoop",
+			                                   "ViscousBodyDamping",
+			                                   "GlobalStiffnessTimeStepper",
+			                                   "DeformableTimeStepper",
+			                                   "DeformableEngine" };
 		return names.count(engine.getClassName()) > 0;
 	}
 
@@ -38,7 +46,8 @@ namespace {
 
 	bool isDeformable(const Body& b)
 	{
-		return dynamic_cast<const DeformableTriangle*>(b.shape.get()) || dynamic_cast<const DeformableNode*>(b.shape.get());
+		return dynamic_cast<const DeformableTriangle*>(b.shape.get())
+		        || dynamic_cast<const DeformableNode*>(b.shape.get());
 	}
 
 	constexpr Real dampingOfYade = 0.2; ///< NewtonIntegrator's default
@@ -48,16 +57,20 @@ namespace {
 bool EngineOrder::neverLooks(const Engine& engine)
 {
 	static const std::set<std::string> names { "ForceEngine", "TorqueEngine" };
-	return isQuiet(engine) || names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine);
+	return isQuiet(engine) || names.count(engine.getClassName()) > 0
+	        || dynamic_cast<const KinematicEngine*>(&engine);
 }
 
 void EngineOrder::maskIntegrators(const Scene& of, int groupMask)
 {
 	for (const auto& e : of.engines)
 		if (auto* newton = dynamic_cast<NewtonIntegrator*>(e.get())) {
-			const int mask = (newton->mask > 0 ? newton->mask : std::numeric_limits<int>::max()) & ~groupMask;
+			const int mask
+			        = (newton->mask > 0 ? newton->mask : std::numeric_limits<int>::max()) & ~groupMask;
 			if (mask == 0)
-				throw std::runtime_error("NewtonIntegrator.mask has only the bit of DeformableEngine.groupMask, so it would move no body or move deformable ones twice; remove its mask");
+				throw std::runtime_error(
+				        "NewtonIntegrator.mask has only the bit of DeformableEngine.groupMask, so it "
+				        "would move no body or move deformable ones twice; remove its mask");
 			newton->mask = mask;
 		}
 }
@@ -69,9 +82,12 @@ void EngineOrder::checkDrivenNodes(const Scene& scene)
 		if (!drive || drive->dead) continue;
 		for (const auto id : drive->ids) {
 			const shared_ptr<Body> b = Body::byId(id, const_cast<Scene*>(&scene));
-			if (b && dynamic_cast<const DeformableNode*>(b->shape.get()) && !(b->state->blockedDOFs & (State::DOF_X | State::DOF_Y)))
+			if (b && dynamic_cast<const DeformableNode*>(b->shape.get())
+			    && !(b->state->blockedDOFs & (State::DOF_X | State::DOF_Y)))
 				throw std::runtime_error(
-				        drive->getClassName() + " drives deformable node " + placeOf(*b) + ", whose degrees of freedom are free; block those that are driven: block.hold(ids, 'y')");
+				        drive->getClassName() + " drives deformable node " + placeOf(*b)
+				        + ", whose degrees of freedom are free; block those that are driven: "
+				          "block.hold(ids, 'y')");
 		}
 	}
 }
@@ -80,8 +96,8 @@ void EngineOrder::requireOpenCell(const Scene& scene)
 {
 	if (!scene.isPeriodic) return;
 	throw std::runtime_error(
-	        "deformable triangles do not feel a periodic cell: set O.periodic = False and drive the sides of the block "
-	        "(block.drive, ddem.platens)");
+	        "deformable triangles do not feel a periodic cell: set O.periodic = False and drive the sides of the "
+	        "block (block.drive, ddem.platens)");
 }
 
 bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
@@ -98,11 +114,15 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		if (name == "ForceResetter") resetter = long(i);
 		if (dynamic_cast<const InteractionLoop*>(now[i])) interactions = long(i);
 	}
-	if (resetter < 0) throw std::runtime_error("O.engines has no ForceResetter: forces and energies would pile up from step to step; put ForceResetter() first");
+	if (resetter < 0)
+		throw std::runtime_error("O.engines has no ForceResetter: forces and energies would pile up from step "
+		                         "to step; put ForceResetter() first");
 	if (resetter > mine)
-		throw std::runtime_error("wrong order in O.engines: ForceResetter comes after DeformableEngine and would wipe forces before they are used; put it first");
+		throw std::runtime_error("wrong order in O.engines: ForceResetter comes after DeformableEngine and "
+		                         "would wipe forces before they are used; put it first");
 	if (interactions > mine)
-		throw std::runtime_error("wrong order in O.engines: InteractionLoop comes after DeformableEngine, so contact forces would be used one step late; put DeformableEngine after it");
+		throw std::runtime_error("wrong order in O.engines: InteractionLoop comes after DeformableEngine, so "
+		                         "contact forces would be used one step late; put DeformableEngine after it");
 	stepper           = nullptr;
 	otherStepper      = nullptr;
 	long timeSteppers = 0;
@@ -110,16 +130,20 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		const auto* setsStep = dynamic_cast<const TimeStepper*>(now[i]);
 		if (!setsStep) continue;
 		timeSteppers++;
-		if (setsStep->active && !setsStep->dead && !dynamic_cast<const DeformableTimeStepper*>(setsStep)) otherStepper = setsStep;
+		if (setsStep->active && !setsStep->dead && !dynamic_cast<const DeformableTimeStepper*>(setsStep))
+			otherStepper = setsStep;
 		if (const auto* found = dynamic_cast<const DeformableTimeStepper*>(now[i])) {
 			stepper = found;
 			if (long(i) > mine)
-				throw std::runtime_error("wrong order in O.engines: DeformableTimeStepper comes after DeformableEngine, which would run with the step before; put it right after ForceResetter");
+				throw std::runtime_error(
+				        "wrong order in O.engines: DeformableTimeStepper comes after DeformableEngine, "
+				        "which would run with the step before; put it right after ForceResetter");
 		}
 	}
 	if (stepper && timeSteppers > 1)
-		throw std::runtime_error(
-		        "O.engines has more than one engine that sets O.dt, and YADE allows one: where the scene has spheres as well, remove the other and set DeformableTimeStepper.largest to the step that they need");
+		throw std::runtime_error("O.engines has more than one engine that sets O.dt, and YADE allows one: "
+		                         "where the scene has spheres as well, remove the other and set "
+		                         "DeformableTimeStepper.largest to the step that they need");
 	collectForces = false;
 	integrators.clear();
 	for (std::size_t i = 0; i < now.size(); i++) {
@@ -128,7 +152,9 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(now[i])) {
 			integrators.push_back(newton);
 			if (long(i) < mine && (newton->mask <= 0 || (newton->mask & self.groupMask)))
-				throw std::runtime_error("wrong order in O.engines: NewtonIntegrator comes before DeformableEngine and has moved deformable bodies in this step; put it after");
+				throw std::runtime_error(
+				        "wrong order in O.engines: NewtonIntegrator comes before DeformableEngine and "
+				        "has moved deformable bodies in this step; put it after");
 		}
 	}
 	for (std::size_t i = 0; i < now.size(); i++) {
@@ -138,7 +164,8 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 				if (b && isDeformable(*b))
 					throw std::runtime_error(
 					        "wrong order in O.engines: " + now[i]->getClassName()
-					        + " comes after DeformableEngine, and its force on deformable body " + std::to_string(id)
+					        + " comes after DeformableEngine, and its force on deformable body "
+					        + std::to_string(id)
 					        + " would be wiped before it is used; put it before DeformableEngine");
 			}
 	}
@@ -154,12 +181,13 @@ Vector3r EngineOrder::gravityFelt(const DeformableEngine& self) const
 		if (self.damping < 0 && newton->damping != 0 && newton->damping != dampingOfYade)
 			throw std::runtime_error(
 			        "NewtonIntegrator.damping = " + number(newton->damping)
-			        + " does not act on deformable triangles: set DeformableEngine.damping as well (0: triangles are not damped)");
+			        + " does not act on deformable triangles: set DeformableEngine.damping as well (0: "
+			          "triangles are not damped)");
 		if (newton->gravity == Vector3r::Zero() || newton->gravity == felt) continue;
 		if (felt != Vector3r::Zero())
 			throw std::runtime_error(
-			        "NewtonIntegrator.gravity and DeformableEngine.gravity differ [m/s²]; leave out one of them: triangles feel "
-			        "NewtonIntegrator's where DeformableEngine has none");
+			        "NewtonIntegrator.gravity and DeformableEngine.gravity differ [m/s²]; leave out one of "
+			        "them: triangles feel NewtonIntegrator's where DeformableEngine has none");
 		felt = newton->gravity;
 	}
 	return felt;

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// What the other engines of a scene mean for deformable triangles: their order, and settings that triangles would not feel.
+// What the other engines of a scene mean for deformable triangles:
+// their order, and settings that triangles would not feel.
 #pragma once
 
 #include <pkg/ddem/YadeInclude.hpp>
@@ -15,18 +16,22 @@ class DeformableTimeStepper;
 class EngineOrder {
 public:
 	/** Looks at O.engines if it has changed since the last call. \returns whether it looked.
-	 * \throws std::runtime_error for engines that are missing, in the wrong order, or have settings that triangles would not feel. */
+	 * \throws std::runtime_error for engines that are missing, in the wrong order,
+	 * or have settings that triangles would not feel. */
 	bool check(const Scene& scene, const DeformableEngine& self);
 	/// Forgets what was checked.
 	void forget() { checked.clear(); }
 
 	const DeformableTimeStepper*         stepper = nullptr;     ///< the one in O.engines, if any
-	const Engine*                        otherStepper = nullptr; ///< an active engine of another kind that sets O.dt
-	bool                                 collectForces = false; ///< whether an engine before may add forces to bodies
+	/// an active engine of another kind that sets O.dt
+	const Engine*                        otherStepper = nullptr;
+	/// whether an engine before may add forces to bodies
+	bool                                 collectForces = false;
 	std::vector<const NewtonIntegrator*> integrators;
 
 	/** Acceleration that triangles feel [m/s²]: the engine's, or NewtonIntegrator's where the engine has none.
-	 * \throws std::runtime_error where the two differ, and where NewtonIntegrator damps and the engine does not say whether it does. */
+	 * \throws std::runtime_error where the two differ, and where NewtonIntegrator damps and the engine does
+	 * not say whether it does. */
 	Vector3r gravityFelt(const DeformableEngine& self) const;
 
 	/// Whether an engine neither adds forces to deformable bodies nor moves or reads free ones.

@@ -12,7 +12,8 @@ namespace yade {
 std::string placeOf(const Body& b)
 {
 	std::ostringstream text;
-	text << "body " << b.getId() << " at (" << b.state->refPos[0] << ", " << b.state->refPos[1] << ") m (reference position)";
+	text << "body " << b.getId() << " at (" << b.state->refPos[0] << ", " << b.state->refPos[1]
+	     << ") m (reference position)";
 	return text.str();
 }
 
@@ -23,18 +24,23 @@ namespace {
 	void requireFinite(const Body& b)
 	{
 		const State& s = *b.state;
-		if (s.pos.allFinite() && s.refPos.allFinite() && s.vel.allFinite() && s.angVel.allFinite() && s.ori.coeffs().allFinite())
+		if (s.pos.allFinite() && s.refPos.allFinite() && s.vel.allFinite() && s.angVel.allFinite()
+		    && s.ori.coeffs().allFinite())
 			return;
 		throw std::invalid_argument(
 		        placeOf(b)
-		        + ": position, velocity or orientation is not finite; set State.pos, State.refPos, State.vel to numbers [m, m/s]");
+		        + ": position, velocity or orientation is not finite; set State.pos, State.refPos, State.vel "
+		          "to numbers [m, m/s]");
 	}
 
 	Real angleOf(const Quaternionr& q) { return 2 * std::atan2(q.z(), q.w()); }
 
 	Quaternionr turnBy(Real angle) { return Quaternionr(std::cos(angle / 2), 0, 0, std::sin(angle / 2)); }
 
-	const DeformableTriangle& triangleShape(const Body& b) { return static_cast<const DeformableTriangle&>(*b.shape); }
+	const DeformableTriangle& triangleShape(const Body& b)
+	{
+		return static_cast<const DeformableTriangle&>(*b.shape);
+	}
 
 } // namespace
 
@@ -45,8 +51,8 @@ StateStore storeOf(const ddem::TriangleSystem& s, const SampleIds& ids)
 	carried.lastTimeStep          = s.motion.lastTimeStep;
 	carried.pendingWork           = { book.gravityWork, book.externalWork, book.dampingLoss };
 	carried.flowClock             = s.group.front()->flowClock; // all groups take the same steps
-	const auto point = [](StateStore::Point& to, const ddem::Points& from, const std::vector<double>& last, unsigned blocked,
-	                      std::size_t i) {
+	const auto point = [](StateStore::Point& to, const ddem::Points& from, const std::vector<double>& last,
+	                      unsigned blocked, std::size_t i) {
 		to.blocked = blocked;
 		for (std::size_t c = 0; c < 2; c++) {
 			to.position[c]     = from.position[2 * i + c];
@@ -152,8 +158,9 @@ bool Exposure::materialsChanged(bool started)
 		if (started && now.initialDamage != shapeValues[i].initialDamage)
 			throw std::invalid_argument(
 			        placeOf(*cores[i])
-			        + ": DeformableTriangle.initialDamage is the damage [-] at the start, and the run has begun; give it "
-			          "before the first step (a material with less strength weakens a triangle during a run)");
+			        + ": DeformableTriangle.initialDamage is the damage [-] at the start, and the run has "
+			          "begun; give it before the first step (a material with less strength weakens "
+			          "a triangle during a run)");
 	}
 	if (!changed) shapeChanges = DeformableTriangle::changes;
 	return changed;
@@ -181,7 +188,8 @@ void Exposure::adopt(int groupMask)
 void Exposure::applyBlockedDegreesOfFreedom()
 {
 	const auto inverse = [](double mass, bool blocked) { return blocked ? 0 : 1 / mass; };
-	const auto apply   = [&](ddem::Points& points, const std::vector<unsigned>& blocked, std::vector<std::size_t>& constrained, unsigned relevant) {
+	const auto apply   = [&](ddem::Points& points, const std::vector<unsigned>& blocked,
+                               std::vector<std::size_t>& constrained, unsigned relevant) {
                 constrained.clear();
                 for (std::size_t i = 0; i < blocked.size(); i++) {
                         points.inverseMass[2 * i]     = inverse(points.mass[i], blocked[i] & State::DOF_X);
@@ -192,7 +200,8 @@ void Exposure::applyBlockedDegreesOfFreedom()
 	apply(system->motion.node, nodeBlocked, constrainedNodes, planeDofs);
 	apply(system->motion.core, coreBlocked, constrainedCores, coreDofs);
 	for (std::size_t i = 0; i < system->motion.spin.size(); i++)
-		system->motion.spin.inverseInertia[i] = inverse(system->motion.spin.inertia[i], coreBlocked[i] & State::DOF_RZ);
+		system->motion.spin.inverseInertia[i]
+		        = inverse(system->motion.spin.inertia[i], coreBlocked[i] & State::DOF_RZ);
 	system->motion.collectConstraints();
 	isConstrained.assign(nodes.size() + cores.size(), 0);
 	for (const auto i : constrainedNodes)
@@ -218,7 +227,8 @@ namespace {
 		if (s.motion.spin.size()) b.state->angVel[2] = s.motion.spin.velocity[i];
 	}
 
-	/// Bodies that live kinematic engines drive. Those engines wipe the velocity of their bodies in every step, in free directions, too, before they set it.
+	/// Bodies that live kinematic engines drive. Those engines wipe the velocity of their bodies in every step,
+	/// in free directions, too, before they set it.
 	std::vector<char> drivenBodies(const Scene& scene)
 	{
 		std::vector<char> driven(scene.bodies->size(), 0);
@@ -279,7 +289,7 @@ void Exposure::exposeConstrained()
 	shown = Shown::Constrained;
 }
 
-// ---- looks of Python -------------------------------------------------------------------------------------------------
+// ---- looks of Python ------------------------------------------------------------------------------------------------
 
 void Exposure::beginLook()
 {
@@ -338,8 +348,8 @@ namespace {
 		if (b.getId() == id && scene.bodies->exists(id)) return;
 		std::ostringstream text;
 		text << "body " << id << " at (" << b.state->refPos[0] << ", " << b.state->refPos[1]
-		     << ") m was erased: deformable nodes and triangles cannot be erased during a simulation; hold them, or build the scene "
-		        "without them";
+		     << ") m was erased: deformable nodes and triangles cannot be erased during a simulation; "
+		        "hold them, or build the scene without them";
 		throw std::invalid_argument(text.str());
 	}
 
@@ -386,7 +396,7 @@ void Exposure::importChanges(const Scene& scene)
 	if (shown == Shown::Constrained || (shown == Shown::Touched && touched.empty())) return;
 	bool       blockedChanged = false;
 	const auto driven         = drivenBodies(scene);
-	const auto isDriven       = [&](Body::id_t id) { return std::size_t(id) < driven.size() && driven[std::size_t(id)]; };
+	const auto isDriven = [&](Body::id_t id) { return std::size_t(id) < driven.size() && driven[std::size_t(id)]; };
 	const auto import         = [&](std::size_t row) {
                 if (row < nodes.size()) return importNode(scene, row, isDriven(nodeId[row]), blockedChanged);
                 const std::size_t i = row - nodes.size();
@@ -428,13 +438,15 @@ void Exposure::importPrescribed()
 {
 	const auto take = [](const Body& b, ddem::Points& points, std::size_t i) {
 		for (std::size_t c = 0; c < 2; c++)
-			if (points.inverseMass[2 * i + c] == 0) points.velocity[2 * i + c] = b.state->vel[Eigen::Index(c)];
+			if (points.inverseMass[2 * i + c] == 0)
+				points.velocity[2 * i + c] = b.state->vel[Eigen::Index(c)];
 	};
 	for (const auto i : constrainedNodes)
 		take(*nodes[i], system->motion.node, i);
 	for (const auto i : constrainedCores) {
 		take(*cores[i], system->motion.core, i);
-		if (system->motion.spin.size() && system->motion.spin.inverseInertia[i] == 0) system->motion.spin.velocity[i] = cores[i]->state->angVel[2];
+		if (system->motion.spin.size() && system->motion.spin.inverseInertia[i] == 0)
+			system->motion.spin.velocity[i] = cores[i]->state->angVel[2];
 	}
 }
 
@@ -466,9 +478,13 @@ void Exposure::exposeReactions(ForceContainer& forces) const
 {
 	forces.sync();
 	for (const auto i : constrainedNodes)
-		forces.addForceUnsynced(nodes[i]->getId(), Vector3r(system->motion.node.force[2 * i], system->motion.node.force[2 * i + 1], 0));
+		forces.addForceUnsynced(
+		        nodes[i]->getId(),
+		        Vector3r(system->motion.node.force[2 * i], system->motion.node.force[2 * i + 1], 0));
 	for (const auto i : constrainedCores)
-		forces.addForceUnsynced(cores[i]->getId(), Vector3r(system->motion.core.force[2 * i], system->motion.core.force[2 * i + 1], 0));
+		forces.addForceUnsynced(
+		        cores[i]->getId(),
+		        Vector3r(system->motion.core.force[2 * i], system->motion.core.force[2 * i + 1], 0));
 }
 
 } // namespace yade

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// The link between YADE's bodies and the arrays of deformable triangles: which body is which row, and state carried both ways.
+// The link between YADE's bodies and the arrays of deformable triangles: which body is which row,
+// and state carried both ways.
 #pragma once
 
 #include <pkg/ddem/DeformableElastMat.hpp>
@@ -73,7 +74,8 @@ public:
 	void endLook() { pythonLooks::end(*this); }
 	/// Writes State as it is now for other threads, who change nothing.
 	void showPicture() const;
-	/// After a look that has ended otherwise than by a step: State of all, with what was changed meanwhile taken up.
+	/// After a look that has ended otherwise than by a step:
+	/// State of all, with what was changed meanwhile taken up.
 	void finishLook(const Scene& scene);
 	/** Takes up what was changed in State, as far as it has been shown.
 	 * \throws std::invalid_argument for values that are not finite and for bodies erased from the scene. */
@@ -84,7 +86,8 @@ public:
 	void importPrescribed();
 	/// Takes up forces and torques that other engines added; `wanted` false drops the arrays.
 	void importForces(ForceContainer& forces, bool wanted);
-	/// Adds internal forces of bodies with blocked degrees of freedom to the container, so that O.forces.f(id) shows reactions.
+	/// Adds internal forces of bodies with blocked degrees of freedom to the container,
+	/// so that O.forces.f(id) shows reactions.
 	void exposeReactions(ForceContainer& forces) const;
 
 	/// Bound on the time step in the present state, see ddem::stableStep.
@@ -94,7 +97,8 @@ public:
 	}
 	/// Stress of the sub-elements at the current positions, in the element's frame [Pa].
 	std::array<ddem::PlaneTensor, 3> stress(std::size_t row) const;
-	/// Fracture energy that a triangle's law has for it, in the law's unit; that of its shape where the law has none.
+	/// Fracture energy that a triangle's law has for it, in the law's unit;
+	/// that of its shape where the law has none.
 	Real fractureEnergy(std::size_t row) const;
 
 private:
@@ -104,13 +108,15 @@ private:
 	std::vector<Fingerprint>         materials;           ///< parameters as they were when the arrays were built
 	std::vector<std::size_t>         coreMaterial;        ///< place in materials of every triangle's
 	std::vector<DeformableTriangle::Values> shapeValues;  ///< what every triangle's shape says
-	unsigned long                    shapeChanges = 0;    ///< DeformableTriangle::changes when they were last compared
+	unsigned long                    shapeChanges = 0;    ///< DeformableTriangle::changes
+	                                                      ///< when they were last compared
 	std::vector<Body::id_t>          nodeId, coreId;      ///< as read; erasing a body takes its id away
 	std::vector<unsigned>            nodeBlocked, coreBlocked; ///< State::blockedDOFs as last taken up
 	std::vector<std::size_t>         constrainedNodes, constrainedCores;
 	std::vector<double>              restFrequency; ///< highest of every triangle [rad/s]
 	Real                             vertexShare = 0;
-	std::size_t                      sceneBodies = 0;         ///< all, as they were when deformable ones were last counted
+	/// all, as they were when deformable ones were last counted
+	std::size_t                      sceneBodies = 0;
 	std::size_t                      sceneTriangles = 0, sceneNodes = 0;
 	bool                             replaced    = false; ///< a body got another material
 

@@ -9,15 +9,18 @@ namespace yade {
 
 namespace {
 
-	constexpr auto shortestUnseen = std::chrono::milliseconds(200); ///< other threads see no older state where that is cheap
-	constexpr int  shareOfTime    = 20;                             ///< a showing may take one part in so many of the time between
+	/// other threads see no older state where that is cheap
+	constexpr auto shortestUnseen = std::chrono::milliseconds(200);
+	constexpr int  shareOfTime    = 20; ///< a showing may take one part in so many of the time between
 
-	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides; early by `slack` of real time rather than late.
+	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides;
+	/// early by `slack` of real time rather than late.
 	bool isDue(const PeriodicEngine& e, long iter, Real time, Real slack)
 	{
 		if (e.firstIterRun > 0 && e.nDone == 0) return e.firstIterRun == iter;
 		const long done = iter < e.iterLast ? 0 : e.nDone;
-		const bool due  = (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod) || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
+		const bool due  = (e.virtPeriod > 0 && time - e.virtLast >= e.virtPeriod)
+		        || (e.realPeriod > 0 && PeriodicEngine::getClock() + slack - e.realLast >= e.realPeriod)
 		        || (e.iterPeriod > 0 && iter - e.iterLast >= e.iterPeriod);
 		return ((e.nDo < 0 || done < e.nDo) && due) || (done == 0 && e.initRun);
 	}
@@ -46,7 +49,8 @@ Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showin
 		}
 		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
-		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01)) continue;
+		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01))
+			continue;
 		if (typeid(*e) != typeid(PyRunner)) return Onlooker::Anybody;
 		python = true;
 	}

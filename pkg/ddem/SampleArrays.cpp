@@ -24,20 +24,26 @@ namespace {
 	}
 
 	/// A view of an array of the system that keeps the system alive.
-	np::ndarray view(const shared_ptr<ddem::TriangleSystem>& system, ddem::ReservedArray<double>& data, std::size_t columns)
+	np::ndarray
+	view(const shared_ptr<ddem::TriangleSystem>& system, ddem::ReservedArray<double>& data, std::size_t columns)
 	{
 		using Owner      = shared_ptr<ddem::TriangleSystem>;
-		PyObject* handle = PyCapsule_New(new Owner(system), nullptr, [](PyObject* capsule) { delete static_cast<Owner*>(PyCapsule_GetPointer(capsule, nullptr)); });
+		PyObject* handle = PyCapsule_New(new Owner(system), nullptr, [](PyObject* capsule) {
+			delete static_cast<Owner*>(PyCapsule_GetPointer(capsule, nullptr));
+		});
 		const boost::python::object   owner { boost::python::handle<>(handle) };
 		const std::size_t             rows = data.size() / columns;
-		const std::vector<std::size_t> sizes = columns == 1 ? std::vector<std::size_t> { rows } : std::vector<std::size_t> { rows, columns };
-		const boost::python::tuple     strides
-		        = columns == 1 ? boost::python::make_tuple(sizeof(double)) : boost::python::make_tuple(columns * sizeof(double), sizeof(double));
+		const std::vector<std::size_t> sizes
+		        = columns == 1 ? std::vector<std::size_t> { rows } : std::vector<std::size_t> { rows, columns };
+		const boost::python::tuple strides = columns == 1
+		        ? boost::python::make_tuple(sizeof(double))
+		        : boost::python::make_tuple(columns * sizeof(double), sizeof(double));
 		return np::from_data(data.data(), np::dtype::get_builtin<double>(), shapeOf(sizes), strides, owner);
 	}
 
 	/// A new array filled by value(i, column).
-	template <class Number, class Value> np::ndarray filled(const std::vector<std::size_t>& sizes, std::size_t columns, Value value)
+	template <class Number, class Value>
+	np::ndarray filled(const std::vector<std::size_t>& sizes, std::size_t columns, Value value)
 	{
 		const np::ndarray result = np::empty(shapeOf(sizes), np::dtype::get_builtin<Number>());
 		auto*             to     = reinterpret_cast<Number*>(result.get_data());
@@ -173,8 +179,8 @@ boost::python::object sampleValues(const Exposure& sample, const std::string& na
 	if (name == "plasticStrain" || name == "damageTensor") return fieldValues(s, name, true);
 	throw std::invalid_argument(
 	        "DeformableEngine.values('" + name
-	        + "') is unknown; there are nodeIds, triangleIds, vertices, tilePlace, area, rotation, fractureEnergy, damage, stress, strain, "
-	          "plasticStrain, damageTensor and the fields of these laws"
+	        + "') is unknown; there are nodeIds, triangleIds, vertices, tilePlace, area, rotation, fractureEnergy, "
+	          "damage, stress, strain, plasticStrain, damageTensor and the fields of these laws"
 	        + names);
 }
 
@@ -184,7 +190,8 @@ boost::python::list sampleFields(const Exposure& sample)
 	std::set<std::string> known;
 	for (const auto& group : sample.system->group)
 		for (const ddem::StateField& f : group->fields())
-			if (known.insert(f.name).second) list.append(boost::python::make_tuple(f.name, f.unit, f.components()));
+			if (known.insert(f.name).second)
+				list.append(boost::python::make_tuple(f.name, f.unit, f.components()));
 	return list;
 }
 

@@ -6,7 +6,8 @@
 
 namespace yade {
 
-/// View, without a copy, of a state array; it keeps the arrays alive. \throws std::invalid_argument for an unknown name.
+/// View, without a copy, of a state array; it keeps the arrays alive. \throws std::invalid_argument
+/// for an unknown name.
 boost::python::object sampleArray(Exposure& sample, const std::string& name);
 /// A quantity of the whole sample, computed now. \throws std::invalid_argument for an unknown name.
 boost::python::object sampleValues(const Exposure& sample, const std::string& name);

@@ -12,13 +12,19 @@ namespace yade {
 
 namespace {
 
-	[[noreturn]] void reject(const Body& b, const std::string& why) { throw std::invalid_argument(placeOf(b) + ": " + why); }
+	[[noreturn]] void reject(const Body& b, const std::string& why)
+	{
+		throw std::invalid_argument(placeOf(b) + ": " + why);
+	}
 
 	void requireNumbers(const Body& b)
 	{
 		const State& s = *b.state;
-		if (!s.pos.allFinite() || !s.refPos.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite() || !s.ori.coeffs().allFinite())
-			reject(b, "position, velocity or orientation is not finite; set State.pos, State.refPos, State.vel to numbers [m, m/s]");
+		if (!s.pos.allFinite() || !s.refPos.allFinite() || !s.vel.allFinite() || !s.angVel.allFinite()
+		    || !s.ori.coeffs().allFinite())
+			reject(b,
+			       "position, velocity or orientation is not finite; set State.pos, State.refPos, "
+			       "State.vel to numbers [m, m/s]");
 	}
 
 	const DeformableTriangle& triangleOf(const Body& b) { return static_cast<const DeformableTriangle&>(*b.shape); }
@@ -28,7 +34,8 @@ namespace {
 		const auto* material = dynamic_cast<const DeformableElastMat*>(b.material.get());
 		if (!material)
 			reject(b,
-			       "a DeformableTriangle needs a DeformableElastMat or ConcreteDamageMat (or another class that derives from the first), not "
+			       "a DeformableTriangle needs a DeformableElastMat or ConcreteDamageMat (or another class "
+			       "that derives from the first), not "
 			               + (b.material ? b.material->getClassName() : std::string("no material")));
 		material->validate();
 		return *material;
@@ -37,7 +44,8 @@ namespace {
 	ddem::PlaneTensor initialDamage(const Body& b)
 	{
 		const Matrix3r& m = triangleOf(b).initialDamage;
-		if (!m.allFinite() || m(0, 2) != 0 || m(1, 2) != 0 || m(2, 0) != 0 || m(2, 1) != 0 || m(0, 1) != m(1, 0))
+		if (!m.allFinite() || m(0, 2) != 0 || m(1, 2) != 0 || m(2, 0) != 0 || m(2, 1) != 0
+		    || m(0, 1) != m(1, 0))
 			reject(b, "initialDamage must be a symmetric tensor [-] with zero xz and yz components");
 		const Real mean = (m(0, 0) + m(1, 1)) / 2, radius = std::hypot((m(0, 0) - m(1, 1)) / 2, m(0, 1));
 		if (mean - radius < -1e-12 * (mean + radius) || m(2, 2) < 0)
@@ -50,9 +58,14 @@ namespace {
 		const DeformableTriangle& shape = triangleOf(b);
 		const Real                own   = shape.fractureEnergy;
 		if (!std::isfinite(own) || own == 0)
-			reject(b, "fractureEnergy = " + std::to_string(own) + " must be positive, in the unit of its material's (J/m³ for concrete), or negative for the material's");
+			reject(b,
+			       "fractureEnergy = " + std::to_string(own)
+			               + " must be positive, in the unit of its material's (J/m³ for concrete), or "
+			                 "negative for the material's");
 		if (!(std::isfinite(shape.bandFactor) && shape.bandFactor > 0))
-			reject(b, "bandFactor = " + std::to_string(shape.bandFactor) + " must be positive (1: no crack band)");
+			reject(b,
+			       "bandFactor = " + std::to_string(shape.bandFactor)
+			               + " must be positive (1: no crack band)");
 		return { area, own, shape.bandFactor, initialDamage(b) };
 	}
 
@@ -73,7 +86,8 @@ namespace {
 		return found == map.end() ? nullptr : &found->second;
 	}
 
-	/// Sorts triangles so that those of a kind (material, thickness) stand together; kinds in the order in which they come.
+	/// Sorts triangles so that those of a kind (material, thickness) stand together;
+	/// kinds in the order in which they come.
 	void sortByKind(std::vector<shared_ptr<Body>>& triangles)
 	{
 		using Kind = std::pair<const Material*, Real>;
@@ -91,7 +105,8 @@ namespace {
 
 std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettings& settings)
 {
-	const std::set<Body::id_t> mine(settings.ids.begin(), settings.ids.end()), others(settings.otherIds.begin(), settings.otherIds.end());
+	const std::set<Body::id_t> mine(settings.ids.begin(), settings.ids.end()),
+	        others(settings.otherIds.begin(), settings.otherIds.end());
 	std::vector<shared_ptr<Body>> found;
 	for (const auto& b : *scene.bodies) {
 		if (!b || !dynamic_cast<const DeformableTriangle*>(b->shape.get())) continue;
@@ -104,21 +119,25 @@ std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettin
 		if (!ours && (b->groupMask & settings.otherBits)) continue;
 		if (!ours && settings.shared)
 			reject(*b,
-			       "O.engines has several DeformableEngine and nothing says which moves it: give the engines' ids "
-			       "(DeformableEngine.ids = block.triangle_ids), or the bodies the bit of one engine's groupMask");
+			       "O.engines has several DeformableEngine and nothing says which moves it: give the "
+			       "engines' ids (DeformableEngine.ids = block.triangle_ids), or the bodies the bit of one "
+			       "engine's groupMask");
 		found.push_back(b);
 	}
 	for (const Body::id_t id : mine)
-		if (!scene.bodies->exists(id) || !dynamic_cast<const DeformableTriangle*>((*scene.bodies)[id]->shape.get()))
+		if (!scene.bodies->exists(id)
+		    || !dynamic_cast<const DeformableTriangle*>((*scene.bodies)[id]->shape.get()))
 			throw std::invalid_argument(
 			        "DeformableEngine.ids: body " + std::to_string(id)
-			        + " is not a DeformableTriangle of the scene; give ids of triangles (block.triangle_ids)");
+			        + " is not a DeformableTriangle of the scene; give ids of triangles "
+			          "(block.triangle_ids)");
 	if (found.empty())
 		throw std::invalid_argument(
 		        settings.otherBits
-		                ? "DeformableEngine: the other engines in O.engines take all triangles; append a mesh for this one, give its ids, or "
-		                  "remove it"
-		                : "DeformableEngine: the scene has no DeformableTriangle; append a mesh first (ddem.append), or remove the engine");
+		                ? "DeformableEngine: the other engines in O.engines take all triangles; append a mesh "
+		                  "for this one, give its ids, or remove it"
+		                : "DeformableEngine: the scene has no DeformableTriangle; append a mesh first "
+		                  "(ddem.append), or remove the engine");
 	return found;
 }
 
@@ -130,7 +149,8 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 	made->cores       = trianglesOf(scene, settings);
 	sortByKind(made->cores);
 
-	// nodes: those of these triangles, and, where no other engine has any, all the others, which then belong to no triangle
+	// nodes: those of these triangles, and, where no other engine has any, all the others,
+	// which then belong to no triangle
 	std::vector<char> used(scene.bodies->size(), 0);
 	for (const auto& b : made->cores)
 		for (int e = 0; e < 3; e++) {
@@ -139,10 +159,11 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			    || !dynamic_cast<const DeformableNode*>((*scene.bodies)[id]->shape.get()))
 				reject(*b,
 				       "its node body " + std::to_string(id)
-				               + " is missing or has no DeformableNode shape; DeformableTriangle.nodes needs three ids of node bodies");
+				               + " is missing or has no DeformableNode shape; DeformableTriangle.nodes "
+				                 "needs three ids of node bodies");
 			used[std::size_t(id)] = 1;
 		}
-	const bool                    alone = settings.ids.empty() && settings.otherBits == 0 && settings.otherIds.empty();
+	const bool alone = settings.ids.empty() && settings.otherBits == 0 && settings.otherIds.empty();
 	std::vector<shared_ptr<Body>> unused;
 	std::vector<std::int32_t>     nodeRow(scene.bodies->size(), -1);
 	for (const auto& b : *scene.bodies) {
@@ -153,7 +174,9 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			continue;
 		}
 		if (b->groupMask & settings.otherBits)
-			reject(*b, "this node has triangles of two DeformableEngine; a block of triangles that share nodes needs one engine");
+			reject(*b,
+			       "this node has triangles of two DeformableEngine; a block of triangles that share nodes "
+			       "needs one engine");
 		requireNumbers(*b);
 		nodeRow[id] = std::int32_t(made->nodes.size());
 		made->nodes.push_back(b);
@@ -188,15 +211,16 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 		double area = 0;
 		try {
 			const auto             reference = ddem::makeReference(place);
-			const ddem::LumpedMass mass
-			        = ddem::lumpMass(reference, material.density, shape.thickness, settings.vertexShare, settings.rotation);
+			const ddem::LumpedMass mass = ddem::lumpMass(
+			        reference, material.density, shape.thickness, settings.vertexShare, settings.rotation);
 			s.topology.addTriangle(rows, reference);
 			area = reference.area();
 			for (const auto row : rows)
 				m.node.mass[std::size_t(row)] += mass.vertex;
 			m.core.mass[i] = mass.core;
 			if (rotates) m.spin.inertia[i] = mass.inertia;
-			const ddem::TriangleStiffness stiffness { material.bulk(), material.shear(), material.rotationStiffness };
+			const ddem::TriangleStiffness stiffness { material.bulk(), material.shear(),
+				                                  material.rotationStiffness };
 			made->restFrequency.push_back(
 			        ddem::highestFrequency(reference, stiffness, shape.thickness, mass, settings.rotation));
 		} catch (const std::invalid_argument& error) {
@@ -204,10 +228,12 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 		}
 		std::array<std::int32_t, 3> key = rows;
 		std::sort(key.begin(), key.end());
-		if (!triples.insert(key).second) reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
+		if (!triples.insert(key).second)
+			reject(b, "another DeformableTriangle has the same three nodes; remove one of them");
 
 		made->shapeValues.push_back(shape.values());
-		const bool ofLast = last && last->material == b.material && triangleOf(*last).thickness == shape.thickness;
+		const bool ofLast
+		        = last && last->material == b.material && triangleOf(*last).thickness == shape.thickness;
 		if (!ofLast) {
 			const LawOfMaterial law   = material.ownLaw();
 			auto                group = law.makeGroup();
@@ -215,9 +241,9 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			if (settings.flowInterval > 1 && group->stiffensInRuns())
 				reject(b,
 				       "DeformableEngine.flowInterval = " + std::to_string(settings.flowInterval)
-				               + " with an equation of state: moduli that change only every so many steps "
-				                 "shake the sample; set equationOfState = False in the material, or "
-				                 "flowInterval = 1");
+				               + " with an equation of state: moduli that change only every so many "
+				                 "steps shake the sample; set equationOfState = False in the material, "
+				                 "or flowInterval = 1");
 			group->flowInterval       = unsigned(settings.flowInterval);
 			group->flowClock          = known.flowClock;
 			group->constants          = { shape.thickness, material.shear() * material.rotationStiffness };

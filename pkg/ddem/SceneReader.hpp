@@ -23,11 +23,12 @@ struct SampleSettings {
 /// The triangles that an engine takes, in the order of their ids. \throws std::invalid_argument as readScene does.
 std::vector<shared_ptr<Body>> trianglesOf(const Scene& scene, const SampleSettings& settings);
 
-/** Builds arrays from the deformable bodies that an engine takes. Triangles of a kind (material, thickness) stand together, in the order
- * of their ids; nodes in the order of theirs. Bodies known from `known` keep that state; the others start from State. Nothing is changed
- * in the scene before all bodies have been checked.
- * \throws std::invalid_argument naming the body for: missing or wrong node bodies, wrong material, degenerate, clockwise or duplicate
- * triangles, nodes without triangles or at the same place, coordinates that are not finite, nodes of two engines, no triangles at all.
+/** Builds arrays from the deformable bodies that an engine takes. Triangles of a kind (material, thickness) stand
+ * together, in the order of their ids; nodes in the order of theirs. Bodies known from `known` keep that state;
+ * the others start from State. Nothing is changed in the scene before all bodies have been checked.
+ * \throws std::invalid_argument naming the body for: missing or wrong node bodies, wrong material, degenerate,
+ * clockwise or duplicate triangles, nodes without triangles or at the same place, coordinates that are not finite,
+ * nodes of two engines, no triangles at all.
  */
 shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& settings, const StateStore& known);
 

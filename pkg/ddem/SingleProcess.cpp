@@ -22,8 +22,8 @@ namespace {
 		if (mpiIsAtWork()) MPI_Abort(MPI_COMM_WORLD, 1);
 	}
 
-	/// Ends the other processes with this one: they may wait for it in a collective call, as its MPI_Finalize does for
-	/// them. Python calls this before MPI_Finalize of mpi4py, which was registered first.
+	/// Ends the other processes with this one: they may wait for it in a collective call, as its MPI_Finalize does
+	/// for them. Python calls this before MPI_Finalize of mpi4py, which was registered first.
 	void endTogether()
 	{
 		static const int registered = Py_AtExit(abortIfAtWork);
@@ -52,9 +52,9 @@ namespace {
 			return size;
 		}
 #endif
-		// YADE starts MPI late or never, so the launcher is asked: Open MPI, MPICH and its kin, MVAPICH. Slurm's variables
-		// do not count: SLURM_NTASKS is there for a single process in an allocation, too, and what srun starts need not
-		// be MPI.
+		// YADE starts MPI late or never, so the launcher is asked: Open MPI, MPICH and its kin, MVAPICH.
+		// Slurm's variables do not count: SLURM_NTASKS is there for a single process in an allocation, too, and
+		// what srun starts need not be MPI.
 		for (const char* name : { "OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE" }) {
 			const char* const value = std::getenv(name);
 			if (value && std::atoi(value) > 0) return std::atoi(value);
@@ -68,7 +68,8 @@ void requireSingleProcess()
 {
 	const int processes = numberOfProcesses();
 	if (processes > 1)
-		refuse("every process would compute the whole sample (this is one of " + std::to_string(processes) + ")");
+		refuse("every process would compute the whole sample (this is one of " + std::to_string(processes)
+		       + ")");
 }
 
 void requireSingleProcess(const Scene& scene)

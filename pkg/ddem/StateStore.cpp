@@ -11,7 +11,8 @@ namespace {
 	[[noreturn]] void damaged(const std::string& what)
 	{
 		throw std::runtime_error(
-		        "the saved state of deformable triangles " + what + ": the file is damaged or from another version of the plugin");
+		        "the saved state of deformable triangles " + what
+		        + ": the file is damaged or from another version of the plugin");
 	}
 
 	/// Reads numbers one after the other. \throws std::runtime_error past the end.
@@ -113,7 +114,8 @@ void StateStore::take(StateStore&& other)
 		pendingWork[i] += other.pendingWork[i];
 	for (auto& [id, memory] : other.memories) {
 		const Fields& fields = other.kinds[memory.fields];
-		const auto    same   = [&](const Fields& f) { return f.names == fields.names && f.components == fields.components; };
+		const auto    same
+		        = [&](const Fields& f) { return f.names == fields.names && f.components == fields.components; };
 		const auto    kind   = std::find_if(kinds.begin(), kinds.end(), same);
 		memory.fields        = std::size_t(kind - kinds.begin());
 		if (kind == kinds.end()) kinds.push_back(fields);
@@ -150,7 +152,8 @@ StateStore::Saved StateStore::saved() const
 		to.names.push_back(line.str());
 	}
 	std::vector<Real>& all = to.numbers;
-	all = { Real(nodes.size()), Real(cores.size()), pendingWork[0], pendingWork[1], pendingWork[2], lastTimeStep, Real(flowClock.steps), flowClock.time };
+	all = { Real(nodes.size()), Real(cores.size()), pendingWork[0],        pendingWork[1],
+		pendingWork[2],     lastTimeStep,       Real(flowClock.steps), flowClock.time };
 	for (const auto& [id, point] : nodes)
 		writePoint(all, id, point);
 	for (const auto& [id, core] : cores) {
@@ -158,7 +161,8 @@ StateStore::Saved StateStore::saved() const
 		all.insert(all.end(), { Real(core.spins), core.angle, core.spin, core.moment, core.lastSpin });
 		const auto memory = memories.find(id);
 		all.push_back(memory == memories.end() ? 0 : Real(memory->second.fields + 1));
-		if (memory != memories.end()) all.insert(all.end(), memory->second.numbers.begin(), memory->second.numbers.end());
+		if (memory != memories.end())
+			all.insert(all.end(), memory->second.numbers.begin(), memory->second.numbers.end());
 	}
 	return to;
 }

@@ -15,13 +15,15 @@
 
 namespace yade {
 
-/** Carries state into new arrays, from older ones or from a saved scene. Bodies are known by their ids, so it fits a scene to which bodies
- * have been added; what a law remembers is known by the names of its fields, so it fits a law whose effects have been changed. */
+/** Carries state into new arrays, from older ones or from a saved scene. Bodies are known by their ids, so it fits
+ * a scene to which bodies have been added; what a law remembers is known by the names of its fields, so it fits
+ * a law whose effects have been changed. */
 class StateStore {
 public:
 	struct Point {
-		unsigned            blocked = 0;                                         ///< State::blockedDOFs
-		std::array<Real, 2> position {}, velocity {}, force {}, lastVelocity {}; ///< lastVelocity: of the last step, where it is prescribed
+		unsigned            blocked = 0; ///< State::blockedDOFs
+		/// lastVelocity: of the last step, where it is prescribed
+		std::array<Real, 2> position {}, velocity {}, force {}, lastVelocity {};
 	};
 	struct Core : Point {
 		bool spins = false;
@@ -35,7 +37,8 @@ public:
 
 	/// Takes what the law of a triangle remembers.
 	void keep(Body::id_t id, const ddem::LawGroup& group, std::size_t triangle);
-	/// Gives it to a triangle of a group: fields of the same name and kind. \returns the names of those that the group does not know.
+	/// Gives it to a triangle of a group: fields of the same name and kind. \returns the names of those that
+	/// the group does not know.
 	std::set<std::string> give(Body::id_t id, ddem::LawGroup& group, std::size_t triangle) const;
 
 	/// Names of the fields that a triangle's group has and that are not known of it.

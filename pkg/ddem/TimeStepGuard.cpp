@@ -12,8 +12,9 @@ namespace {
 	// Steps between looks: against shape, and against pressure, which may rise faster.
 	constexpr long shapeInterval = 50, pressureInterval = 10;
 
-	// A leapfrog whose step goes up and down is unstable well below the bound on a constant one (parametric resonance of vibrations whose
-	// period is about that of the change). A stepper that follows the bound turns now and then; this is more.
+	// A leapfrog whose step goes up and down is unstable well below the bound on a constant one (parametric
+	// resonance of vibrations whose period is about that of the change).
+	// A stepper that follows the bound turns now and then; this is more.
 	constexpr int  mostTurns   = 6;
 	constexpr long turnsWithin = 24; ///< steps
 
@@ -42,15 +43,17 @@ void TimeStepGuard::checkAlternation(const Scene& scene)
 	direction = sign;
 	if (turns < mostTurns) return;
 	std::ostringstream text;
-	text << "O.dt has gone up and down " << turns << " times since step " << firstTurn << " and is " << scene.dt << " s in step "
-	     << scene.iter
-	     << ": steps that alternate excite vibrations well below the critical step; keep O.dt constant for a while, or let "
-	        "DeformableTimeStepper() in O.engines choose it";
+	text << "O.dt has gone up and down " << turns << " times since step " << firstTurn << " and is " << scene.dt
+	     << " s in step " << scene.iter
+	     << ": steps that alternate excite vibrations well below the critical step; keep O.dt constant for "
+	        "a while, or let DeformableTimeStepper() in O.engines choose it";
 	turns = 0;
 	throw std::runtime_error(text.str());
 }
 
-std::string TimeStepGuard::check(const Scene& scene, const Exposure& sample, const DeformableTimeStepper* stepper, const Engine* other, bool stopAtInverted)
+std::string TimeStepGuard::check(
+        const Scene& scene, const Exposure& sample, const DeformableTimeStepper* stepper, const Engine* other,
+        bool stopAtInverted)
 {
 	std::string warning;
 	if (scene.dt == stable && scene.iter % interval != 0) return warning;
@@ -63,10 +66,10 @@ std::string TimeStepGuard::check(const Scene& scene, const Exposure& sample, con
 	const auto inverted = sample.system->mostInverted();
 	if (inverted.ratio <= 0 && (stopAtInverted || !warned)) {
 		std::ostringstream text;
-		text << "triangle " << placeOf(*sample.cores[inverted.triangle]) << " is inside out in step " << scene.iter << ", t = " << scene.time
-		     << " s: its area is " << inverted.ratio
-		     << " of what it was; the load is more than this mesh can follow: load it slower, remesh that place, or end the run before "
-		        "(DeformableEngine.inverted = 'warn' lets it go on)";
+		text << "triangle " << placeOf(*sample.cores[inverted.triangle]) << " is inside out in step "
+		     << scene.iter << ", t = " << scene.time << " s: its area is " << inverted.ratio
+		     << " of what it was; the load is more than this mesh can follow: load it slower, remesh that "
+		        "place, or end the run before (DeformableEngine.inverted = 'warn' lets it go on)";
 		if (stopAtInverted) throw std::runtime_error(text.str());
 		warning = text.str();
 		warned  = true;
@@ -82,14 +85,15 @@ std::string TimeStepGuard::check(const Scene& scene, const Exposure& sample, con
 	     << placeOf(*sample.cores[triangle]) << " in step " << scene.iter << "; the simulation would blow up: ";
 	if (other)
 		text << other->getClassName()
-		     << " sets O.dt and does not know deformable triangles: put DeformableTimeStepper() in its place, with largest = the step "
-		        "that the other bodies need";
+		     << " sets O.dt and does not know deformable triangles: put DeformableTimeStepper() in its place, "
+		        "with largest = the step that the other bodies need";
 	else if (stepper)
-		text << "set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; DeformableTimeStepper looks every "
+		text << "set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; DeformableTimeStepper looks "
+		        "every "
 		     << stepper->timeStepUpdateInterval << " steps: let it look more often";
 	else
-		text << "set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; where triangles stretch or pressure rises, let "
-		        "DeformableTimeStepper() in O.engines lower it";
+		text << "set O.dt = 0.8*engine.criticalTimeStep(), or remesh that place; where triangles stretch or "
+		        "pressure rises, let DeformableTimeStepper() in O.engines lower it";
 	throw std::runtime_error(text.str());
 }
 

@@ -14,9 +14,11 @@ public:
 	 * \param stepper the one in O.engines, if any; \param other another engine that sets O.dt, if any.
 	 * \param stopAtInverted false: a triangle inside out is only warned of, once.
 	 * \returns a warning, or nothing.
-	 * \throws std::runtime_error for a step that is not positive and finite, above the critical one, or alternating, and for a triangle
-	 * that is inside out. */
-	std::string check(const Scene& scene, const Exposure& sample, const DeformableTimeStepper* stepper, const Engine* other, bool stopAtInverted);
+	 * \throws std::runtime_error for a step that is not positive and finite, above the critical one,
+	 * or alternating, and for a triangle that is inside out. */
+	std::string
+	check(const Scene& scene, const Exposure& sample, const DeformableTimeStepper* stepper, const Engine* other,
+	      bool stopAtInverted);
 	/// The arrays are new: everything is to be looked at again. `stiffens` where pressure may raise the moduli.
 	void restart(bool stiffens);
 	/// Whether O.dt has not been compared with the bound yet.

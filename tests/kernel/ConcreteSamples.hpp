@@ -16,10 +16,12 @@ using MaterialPoint = PointOf<ConcreteDamage>;
 using PathPoint     = MaterialPoint::PathPoint;
 
 /// advanceConcrete for a mask known at run time.
-using ConcreteUpdate = void (*)(const PreparedConcrete&, const FractureEnergyOf<double>&, const PlaneTensor& strain, double dt, ConcreteState&);
+using ConcreteUpdate = void (*)(
+        const PreparedConcrete&, const FractureEnergyOf<double>&, const PlaneTensor& strain, double dt, ConcreteState&);
 inline ConcreteUpdate concreteUpdate(unsigned effects)
 {
-	return withMask<ConcreteDamage>(effects, [](auto mask) -> ConcreteUpdate { return &advanceConcrete<mask(), double>; });
+	return withMask<ConcreteDamage>(
+	        effects, [](auto mask) -> ConcreteUpdate { return &advanceConcrete<mask(), double>; });
 }
 
 inline Eigen::Matrix3d matrixOf(const PlaneTensor& t)
@@ -30,7 +32,10 @@ inline Eigen::Matrix3d matrixOf(const PlaneTensor& t)
 }
 
 using yade::ddem::tensorOf;
-inline PlaneTensor tensorOf(const Eigen::Matrix3d& m) { return { m(0, 0), m(1, 1), m(2, 2), 0.5 * (m(0, 1) + m(1, 0)) }; }
+inline PlaneTensor tensorOf(const Eigen::Matrix3d& m)
+{
+	return { m(0, 0), m(1, 1), m(2, 2), 0.5 * (m(0, 1) + m(1, 0)) };
+}
 
 inline double distance(const PlaneTensor& a, const PlaneTensor& b) { return norm(a - b); }
 
@@ -58,7 +63,10 @@ public:
 	}
 	double      number(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
 	double      logarithmic(double from, double to) { return std::exp(number(std::log(from), std::log(to))); }
-	PlaneTensor tensor(double size) { return { number(-size, size), number(-size, size), number(-size, size), number(-size, size) }; }
+	PlaneTensor tensor(double size)
+	{
+		return { number(-size, size), number(-size, size), number(-size, size), number(-size, size) };
+	}
 	/// Positive semi-definite, as a damage tensor is.
 	PlaneTensor damage(double size)
 	{
@@ -86,7 +94,9 @@ public:
 	{
 		PlaneTensor strain { 0, 0, 0, 0 };
 		for (int wave = 0; wave < 3; ++wave)
-			strain = strain + (std::sin(frequencies_[wave] * t + phases_[wave]) - std::sin(phases_[wave])) * amplitudes_[wave];
+			strain = strain
+			        + (std::sin(frequencies_[wave] * t + phases_[wave]) - std::sin(phases_[wave]))
+			                * amplitudes_[wave];
 		return strain;
 	}
 

@@ -20,11 +20,14 @@ namespace yade::ddem::samples {
 using Point    = PlaneVector<double>;
 using Vertices = std::array<Point, 3>;
 
-constexpr RotationTreatment allTreatments[] = { RotationTreatment::None, RotationTreatment::Corotational, RotationTreatment::Cosserat };
+constexpr RotationTreatment allTreatments[]
+        = { RotationTreatment::None, RotationTreatment::Corotational, RotationTreatment::Cosserat };
 
 inline std::string name(RotationTreatment rotation)
 {
-	return rotation == RotationTreatment::None ? "None" : rotation == RotationTreatment::Corotational ? "Corotational" : "Cosserat";
+	return rotation == RotationTreatment::None            ? "None"
+	        : rotation == RotationTreatment::Corotational ? "Corotational"
+	                                                      : "Cosserat";
 }
 
 /// Elastic material of a test; the defaults are the concrete of Zubelewicz (2018), Table 1.
@@ -52,7 +55,8 @@ public:
 	}
 	double uniform(double from, double to) { return from + (to - from) * double(engine() >> 11) * 0x1p-53; }
 	Point  point(double size) { return { uniform(-size, size), uniform(-size, size) }; }
-	/// Counter-clockwise triangle of any shape down to a height of 1/20 of its longest edge, 1 mm to `widest` [m] across.
+	/// Counter-clockwise triangle of any shape down to a height of 1/20 of its longest edge,
+	/// 1 mm to `widest` [m] across.
 	Vertices skewedTriangle(double widest = 10)
 	{
 		const double size = std::pow(10., uniform(-3, std::log10(widest)));
@@ -90,7 +94,8 @@ struct Mesh {
 	}
 };
 
-/// Rectangle [0, width] × [0, height] of cells cut by alternating diagonals; inner and outer nodes are moved by up to `jitter` of a cell.
+/// Rectangle [0, width] × [0, height] of cells cut by alternating diagonals;
+/// inner and outer nodes are moved by up to `jitter` of a cell.
 inline Mesh rectangle(int columns, int rows, double width, double height, double jitter = 0, std::uint64_t seed = 1)
 {
 	Random       random(seed);
@@ -98,7 +103,8 @@ inline Mesh rectangle(int columns, int rows, double width, double height, double
 	Mesh         mesh;
 	for (int j = 0; j <= rows; j++)
 		for (int i = 0; i <= columns; i++)
-			mesh.node.push_back({ (i + jitter * random.uniform(-1, 1)) * dx, (j + jitter * random.uniform(-1, 1)) * dy });
+			mesh.node.push_back({ (i + jitter * random.uniform(-1, 1)) * dx,
+			                      (j + jitter * random.uniform(-1, 1)) * dy });
 	for (int j = 0; j < rows; j++)
 		for (int i = 0; i < columns; i++) {
 			const std::int32_t a = j * (columns + 1) + i, b = a + 1, d = a + columns + 1, c = d + 1;
@@ -197,8 +203,11 @@ inline double criticalStep(const Mesh& mesh, const Material& material, RotationT
 	double highest = 0;
 	for (std::size_t i = 0; i < mesh.triangle.size(); i++) {
 		const auto reference = makeReference(mesh.corners(i));
-		highest              = std::max(
-                        highest, highestFrequency(reference, material.stiffness(), material.thickness, material.mass(reference, rotation), rotation));
+		highest = std::max(
+		        highest,
+		        highestFrequency(
+		                reference, material.stiffness(), material.thickness, material.mass(reference, rotation),
+		                rotation));
 	}
 	return 2 / highest;
 }

@@ -1,8 +1,9 @@
 // GPL v2 or later, see LICENSE.
 // Frictional contact of two particles that are not, or no longer, bonded.
 //
-// Slip is measured along the surfaces of the two rolling spheres, so that it does not depend on the overlap and a cycle of the normal force leaves no
-// tangential force behind (no ratcheting: McNamara, García-Rojo, Herrmann, Phys. Rev. E 77, 031304, 2008). The force is its exact conjugate.
+// Slip is measured along the surfaces of the two rolling spheres, so that it does not depend on the overlap and a cycle
+// of the normal force leaves no tangential force behind (no ratcheting: McNamara, García-Rojo, Herrmann,
+// Phys. Rev. E 77, 031304, 2008). The force is its exact conjugate.
 #pragma once
 
 #include <pkg/bonded/kernel/BondSection.hpp>
@@ -17,13 +18,15 @@ namespace yade::ddem {
 struct ContactFriction {
 	double staticCoefficient;  ///< [-]
 	double dynamicCoefficient; ///< [-]
-	/** Whether the tangential force grows gradually, F_T = μ F_N (1 - (1 - |δ|/δ_max)^{3/2}) up to gross sliding at |δ| = δ_max (eq. 7 of the report), instead of
-	 * linearly, F_T = k_s |δ| up to μ F_N. The report leaves δ_max open; here it is 3 μ F_N/(2 k_s), so that both start with the same stiffness k_s.
+	/** Whether the tangential force grows gradually, F_T = μ F_N (1 - (1 - |δ|/δ_max)^{3/2}) up to gross sliding
+	 * at |δ| = δ_max (eq. 7 of the report), instead of linearly, F_T = k_s |δ| up to μ F_N. The report leaves
+	 * δ_max open; here it is 3 μ F_N/(2 k_s), so that both start with the same stiffness k_s.
 	 */
 	bool gradual = false;
 };
 
-/// Coefficients of viscous contact damping [N·s/m], eq. 6 of the report: F_n = F_N - c_n v_n, F_t = F_T - c_t v_t; the latter only while the contact does not slide.
+/// Coefficients of viscous contact damping [N·s/m], eq. 6 of the report: F_n = F_N - c_n v_n, F_t = F_T - c_t v_t;
+/// the latter only while the contact does not slide.
 struct ContactDamping {
 	double normal = 0, shear = 0;
 };
@@ -33,8 +36,8 @@ struct ContactStiffness {
 	double normal, shear;
 };
 
-/** Springs of a contact that opens at the distance `reach` of the centres: those of a bond of radius reach/2 and length reach (ESyS-Particle), so that a
- * compressed bond that breaks keeps its normal force.
+/** Springs of a contact that opens at the distance `reach` of the centres: those of a bond of radius reach/2 and length
+ * reach (ESyS-Particle), so that a compressed bond that breaks keeps its normal force.
  */
 inline ContactStiffness contactStiffness(const BondElasticity& elasticity, double reach)
 {
@@ -54,12 +57,16 @@ struct ContactMotion {
 /// What a contact remembers between steps.
 struct ContactMemory {
 	Eigen::Vector3d normal  = Eigen::Vector3d::Zero(); ///< of the last step; zero for a new contact
-	Eigen::Vector3d shear   = Eigen::Vector3d::Zero(); ///< k_s times the elastic slip of the last step: the force of a linear spring on particle 1 [N]
-	double          force   = 0;                       ///< magnitude of the tangential spring's force in the last step [N]
+	Eigen::Vector3d shear   = Eigen::Vector3d::Zero(); ///< k_s times the elastic slip of the last step: the force
+	                                                   ///< of a linear spring on particle 1 [N]
+	double          force   = 0;                       ///< magnitude of the tangential spring's
+	                                                   ///< force in the last step [N]
 	double          energy  = 0;                       ///< stored in that spring [J]
 	bool            sliding = false;                   ///< has slipped before
-	double          viscousNormal = 0;                       ///< normal damping force of the last step, tension positive [N]
-	Eigen::Vector3d viscousShear  = Eigen::Vector3d::Zero(); ///< tangential damping force of the last step, on particle 1 [N]
+	/// normal damping force of the last step, tension positive [N]
+	double          viscousNormal = 0;
+	/// tangential damping force of the last step, on particle 1 [N]
+	Eigen::Vector3d viscousShear  = Eigen::Vector3d::Zero();
 };
 
 /// What the contact does to its particles. The force on particle 2 is -force.
@@ -73,8 +80,10 @@ struct ContactLoads {
 	bool            touching   = false;
 };
 
-/// Turns a vector that lies in the plane of `from` into the plane of `to` by the smallest rotation, then about `to` by `spin` [rad]; keeps its length.
-inline Eigen::Vector3d followContact(const Eigen::Vector3d& vector, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double spin)
+/// Turns a vector that lies in the plane of `from` into the plane of `to` by the smallest rotation, then about `to` by
+/// `spin` [rad]; keeps its length.
+inline Eigen::Vector3d
+followContact(const Eigen::Vector3d& vector, const Eigen::Vector3d& from, const Eigen::Vector3d& to, double spin)
 {
 	const Eigen::Vector3d tilted = vector - (from + to) * (vector.dot(to) / (1 + from.dot(to)));
 	const double          t = spin / 2, cosine = (1 - t * t) / (1 + t * t), sine = 2 * t / (1 + t * t);
@@ -92,8 +101,10 @@ struct TangentialSpring {
 inline TangentialSpring tangentialSpring(bool gradual, double linear, double strength, double stiffness)
 {
 	if (!gradual) return { linear, 0.5 * linear * linear / stiffness, strength };
-	const double limit = 1.5 * strength, left = limit > 0 ? std::max(0., 1 - linear / limit) : 0, root = std::sqrt(left);
-	return { strength * (1 - left * root), strength * (linear + 0.4 * limit * (left * left * root - 1)) / stiffness, limit };
+	const double limit = 1.5 * strength, left = limit > 0 ? std::max(0., 1 - linear / limit) : 0,
+	             root = std::sqrt(left);
+	return { strength * (1 - left * root), strength * (linear + 0.4 * limit * (left * left * root - 1)) / stiffness,
+		 limit };
 }
 
 /// One step of a contact of spheres. A pair further apart than its reach bears nothing and forgets its slip.
@@ -108,16 +119,21 @@ inline ContactLoads contactLoads(
 	using Eigen::Vector3d;
 	const double    reach = motion.radius1 + motion.radius2, overlap = reach - motion.distance;
 	const Vector3d& n     = motion.normal;
-	const double    scale = reach / motion.distance; // turns the centres' relative velocity into one of the surfaces
-	Vector3d        slip  = dt * (scale * motion.relativeVelocity - (motion.radius1 * motion.angularVelocity1 + motion.radius2 * motion.angularVelocity2).cross(n));
+	// turns the centres' relative velocity into one of the surfaces
+	const double    scale = reach / motion.distance;
+	Vector3d        slip  = dt
+	        * (scale * motion.relativeVelocity
+	           - (motion.radius1 * motion.angularVelocity1 + motion.radius2 * motion.angularVelocity2).cross(n));
 	slip -= n.dot(slip) * n;
 	const double opening = dt * n.dot(motion.relativeVelocity);
 
 	const double   spin = 0.5 * dt * n.dot(motion.angularVelocity1 + motion.angularVelocity2);
-	const Vector3d old  = memory.normal.isZero(0) ? Vector3d::Zero() : followContact(memory.shear, memory.normal, n, spin);
+	const Vector3d old
+	        = memory.normal.isZero(0) ? Vector3d::Zero() : followContact(memory.shear, memory.normal, n, spin);
 	const double   size = old.norm();
 
-	// What springs lose and dampers take between the last step and this one is the mean of their forces times the motion, as leapfrog sees it.
+	// What springs lose and dampers take between the last step and this one is the mean of their forces times the
+	// motion, as leapfrog sees it.
 	ContactLoads   loads;
 	const Vector3d oldForce = size > 0 ? Vector3d(memory.force / size * old) : Vector3d::Zero();
 	loads.dissipated        = memory.energy + 0.5 * oldForce.dot(slip);
@@ -129,8 +145,11 @@ inline ContactLoads contactLoads(
 
 	Vector3d         shear    = old + stiffness.shear * slip;
 	const double     pressure = stiffness.normal * overlap, trial = shear.norm();
-	const auto       spring   = [&](double linear) {
-                return tangentialSpring(friction.gradual, linear, (memory.sliding ? friction.dynamicCoefficient : friction.staticCoefficient) * pressure, stiffness.shear);
+	const auto spring = [&](double linear) {
+		return tangentialSpring(
+		        friction.gradual, linear,
+		        (memory.sliding ? friction.dynamicCoefficient : friction.staticCoefficient) * pressure,
+		        stiffness.shear);
 	};
 	TangentialSpring tangential = spring(trial);
 	const bool       slides     = trial > tangential.limit;
@@ -141,7 +160,8 @@ inline ContactLoads contactLoads(
 	}
 	const double   length = slides ? tangential.limit : trial;
 	const Vector3d force  = length > 0 ? Vector3d(tangential.force / length * shear) : Vector3d::Zero();
-	loads.dissipated      = slides || friction.gradual ? loads.dissipated - tangential.energy + 0.5 * force.dot(slip) : 0;
+	loads.dissipated
+	        = slides || friction.gradual ? loads.dissipated - tangential.energy + 0.5 * force.dot(slip) : 0;
 
 	memory.normal        = n;
 	memory.shear         = shear;

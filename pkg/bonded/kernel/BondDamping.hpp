@@ -4,8 +4,9 @@
 
 namespace yade::ddem {
 
-/** Damping force -γ m v̄ for leapfrog, where v̄ is the mean of the velocities before and after the step (ESyS-Particle's LinDamping and RotDamping take the
- * velocity after it). Exact in energy and stable for every dt: v' = v (1 - γ dt/2)/(1 + γ dt/2) without other forces.
+/** Damping force -γ m v̄ for leapfrog, where v̄ is the mean of the velocities before and after the step
+ * (ESyS-Particle's LinDamping and RotDamping take the velocity after it). Exact in energy and stable for every dt:
+ * v' = v (1 - γ dt/2)/(1 + γ dt/2) without other forces.
  */
 class ViscousDamper {
 public:
@@ -21,7 +22,10 @@ public:
 	 * \param otherLoad all other forces or moments [N or N·m]
 	 * \param mass mass or moment of inertia [kg or kg·m²]
 	 */
-	double load(double velocity, double otherLoad, double mass) const { return -rate * (mass * velocity + 0.5 * step * otherLoad); }
+	double load(double velocity, double otherLoad, double mass) const
+	{
+		return -rate * (mass * velocity + 0.5 * step * otherLoad);
+	}
 
 	/// Energy that this component takes away in the step [J].
 	double loss(double velocity, double otherLoad, double mass) const

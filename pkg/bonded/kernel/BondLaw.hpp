@@ -1,17 +1,21 @@
 // GPL v2 or later, see LICENSE.
 // The elastic bond: forces and moments on two particles from their positions and orientations.
 //
-// The bond is one element of the geometrically exact beam between the particles' centres (Simo, Comput. Methods Appl. Mech. Eng. 49, 1985), with one
-// integration point at its middle, which keeps a short beam free of shear locking (Hughes, Taylor, Kanoknukulchai, Int. J. Numer. Meth. Eng. 11, 1977).
-// To first order it is the bond of ESyS-Particle (Wang, Acta Geotechnica 4, 2009): shear = (u2 - u1)_t - (d0/2)(φ1 + φ2) × n, bending and twist = φ2 - φ1.
+// The bond is one element of the geometrically exact beam between the particles' centres (Simo, Comput. Methods Appl.
+// Mech. Eng. 49, 1985), with one integration point at its middle, which keeps a short beam free of shear locking
+// (Hughes, Taylor, Kanoknukulchai, Int. J. Numer. Meth. Eng. 11, 1977).
+// To first order it is the bond of ESyS-Particle (Wang, Acta Geotechnica 4, 2009):
+// shear = (u2 - u1)_t - (d0/2)(φ1 + φ2) × n, bending and twist = φ2 - φ1.
 //
-// The frames Λ1, Λ2 turn with the particles and coincide when the bond is made, first axis along the bond. The middle frame Λ is half way between them:
+// The frames Λ1, Λ2 turn with the particles and coincide when the bond is made, first axis along the bond. The middle
+// frame Λ is half way between them:
 //   Γ = Λᵀ(x2 - x1) - d0 e1                    stretch and shear,
 //   θ = rotation vector of Λ1ᵀΛ2               torsion and bending,
 //   U = ½ (kn Γ1² + ks (Γ2² + Γ3²)) + ½ (kt θ1² + kb (θ2² + θ3²)).
-// Forces and moments are the exact derivatives of U. So the bond is conservative for any radii and any rotation below π, and because U does not change when
-// both particles move and turn together, linear and angular momentum are conserved to round-off (objectivity: Crisfield, Jelenić, Proc. R. Soc. A 455, 1999).
-// Loads are total, not incremental: nothing drifts. No acos or asin is taken: at small angles they lose half of the digits.
+// Forces and moments are the exact derivatives of U. So the bond is conservative for any radii and any rotation below
+// π, and because U does not change when both particles move and turn together, linear and angular momentum are
+// conserved to round-off (objectivity: Crisfield, Jelenić, Proc. R. Soc. A 455, 1999). Loads are total, not
+// incremental: nothing drifts. No acos or asin is taken: at small angles they lose half of the digits.
 #pragma once
 
 #include <pkg/bonded/kernel/BondSection.hpp>
@@ -25,7 +29,8 @@ template <class Number> struct BondOf {
 	BondStiffnessOf<Number> stiffness;
 	Number                  length;           ///< d0 [m]
 	Number                  radius1, radius2; ///< of the particles [m]
-	SpaceRotation<Number>        frame1;           ///< the bond's frame in the axes of particle 1, first axis from particle 1 to 2
+	SpaceRotation<Number>        frame1;           ///< the bond's frame in the axes of particle 1, first
+	                                               ///< axis from particle 1 to 2
 	SpaceRotation<Number>        frame2;           ///< the same frame in the axes of particle 2
 };
 using Bond = BondOf<double>;
@@ -70,7 +75,8 @@ inline Bond makeBond(
 	return { stiffness, length, radius1, radius2, inverse(orientation1) * frame, inverse(orientation2) * frame };
 }
 
-/// Factors that turn the vector part v of a unit quaternion into its rotation vector: θ = 2 f v with f = asin|v|/|v|, and (1 - f)/|v|² for its derivative.
+/// Factors that turn the vector part v of a unit quaternion into its rotation vector: θ = 2 f v with f = asin|v|/|v|,
+/// and (1 - f)/|v|² for its derivative.
 template <class Number> struct HalfAngle {
 	Number factor;     ///< f
 	Number complement; ///< (1 - f)/|v|²
@@ -82,7 +88,9 @@ template <class Number> inline HalfAngle<Number> halfAngle(const Number& scalar,
 	using std::atan2;
 	using std::sqrt;
 	// The series is exact to the last digit below 1e-3, and needs no special case at zero.
-	const Number series     = -(1. / 6 + squared * (3. / 40 + squared * (15. / 336 + squared * (105. / 3456 + squared * 945. / 42240))));
+	const Number series
+	        = -(1. / 6
+	            + squared * (3. / 40 + squared * (15. / 336 + squared * (105. / 3456 + squared * 945. / 42240))));
 	const auto   large      = squared > Number(1e-3);
 	HalfAngle<Number> small = { 1. - squared * series, series };
 	if (!any(large)) return small;
@@ -95,8 +103,9 @@ template <class Number> inline HalfAngle<Number> halfAngle(const Number& scalar,
  * \param orientation1,orientation2 unit quaternions, body to world
  */
 template <class Number>
-inline BondLoadsOf<Number>
-bondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, const SpaceRotation<Number>& orientation1, const SpaceRotation<Number>& orientation2)
+inline BondLoadsOf<Number> bondLoads(
+        const BondOf<Number>& bond, const SpaceVector<Number>& branch, const SpaceRotation<Number>& orientation1,
+        const SpaceRotation<Number>& orientation2)
 {
 	const SpaceRotation<Number> end1 = orientation1 * bond.frame1, other = orientation2 * bond.frame2;
 	// the shorter of the two rotations between the ends
@@ -104,7 +113,8 @@ bondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, const S
 	const SpaceRotation<Number>    end2     = sign * other;
 	const SpaceRotation<Number>    relative = inverse(end1) * end2;
 	const SpaceVector<Number> v        = relative.vector();
-	const Axes<Number>        middle   = axesOf(end1 + end2); // the bond's axes: the sum of two quaternions is, but for its length, the rotation half way between
+	// the bond's axes: the sum of two quaternions is, but for its length, the rotation half way between
+	const Axes<Number>        middle   = axesOf(end1 + end2);
 
 	const SpaceVector<Number> local = middle.components(branch);
 	const HalfAngle<Number>   half  = halfAngle(relative.w, dot(v, v));
@@ -117,9 +127,11 @@ bondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, const S
 	loads.section.moment = { k.torsion * rotation.x, k.bending * rotation.y, k.bending * rotation.z };
 	loads.energy         = 0.5 * (dot(loads.section.force, stretch) + dot(loads.section.moment, rotation));
 
-	// δU = force·δΓ + moment·δθ. With spins w1, w2 of the ends, in the middle frame: δθ = v v·w (1 - f)/|v|² + f w for w = w2 - w1, and the middle frame
-	// spins with ½(w1 + w2) - ½ g × (w2 - w1), g = v/(1 + scalar) = tan(θ/4) along the axis.
-	const SpaceVector<Number> conjugate = half.factor * loads.section.moment + (half.complement * dot(loads.section.moment, v)) * v;
+	// δU = force·δΓ + moment·δθ. With spins w1, w2 of the ends, in the middle frame: δθ = v v·w (1 - f)/|v|² + f w
+	// for w = w2 - w1, and the middle frame spins with ½(w1 + w2) - ½ g × (w2 - w1),
+	// g = v/(1 + scalar) = tan(θ/4) along the axis.
+	const SpaceVector<Number> conjugate
+	        = half.factor * loads.section.moment + (half.complement * dot(loads.section.moment, v)) * v;
 	const SpaceVector<Number> couple    = Number(0.5) * cross(local, loads.section.force);
 	const SpaceVector<Number> swing     = (1. / (1. + relative.w)) * cross(couple, v) + conjugate;
 	loads.force                         = middle.vector(loads.section.force);

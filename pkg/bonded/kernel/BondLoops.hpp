@@ -15,7 +15,8 @@ struct BondArrays {
 	double*             rows;
 };
 
-/// Computes bonds begin … end - 1 and, rounded up to whole SIMD batches, some after them. \returns whether any of them is beyond its strength
+/// Computes bonds begin … end - 1 and, rounded up to whole SIMD batches, some after them. \returns whether any of
+/// them is beyond its strength
 using BondLoop = bool (*)(const BondArrays&, std::size_t begin, std::size_t end);
 
 /// The loop for the widest SIMD unit of the processor it runs on.

@@ -11,7 +11,8 @@ namespace {
 }
 BondLoop selectBondLoopAvx2(BondConvention convention)
 {
-	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? bondLoopFor<Avx2, Batch>(convention) : nullptr;
+	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? bondLoopFor<Avx2, Batch>(convention)
+	                                                                       : nullptr;
 }
 #else
 BondLoop selectBondLoopAvx2(BondConvention) { return nullptr; }

@@ -34,7 +34,8 @@ template <class Number> struct BondSectionOf {
 using BondSection = BondSectionOf<double>;
 
 /** Stiffnesses of a bond, loads per relative motion of its ends.
- * Normal, shear and torsion as in ESyS-Particle's BrittleBeam (Weatherley et al., ESyS-Particle tutorial); bending is the full E I/d0 of beam theory.
+ * Normal, shear and torsion as in ESyS-Particle's BrittleBeam (Weatherley et al., ESyS-Particle tutorial); bending is
+ * the full E I/d0 of beam theory.
  */
 template <class Number> struct BondStiffnessOf {
 	Number normal;  ///< E A/d0 [N/m]

@@ -14,8 +14,14 @@ namespace {
 		double translation = 0, rotation = 0;
 	};
 
-	Stiffness ofFirst(const PairSpring& s) { return { std::max(s.normal, s.shear), std::max(s.bending, s.torsion) + s.shear * s.arm1 * s.arm1 }; }
-	Stiffness ofSecond(const PairSpring& s) { return { std::max(s.normal, s.shear), std::max(s.bending, s.torsion) + s.shear * s.arm2 * s.arm2 }; }
+	Stiffness ofFirst(const PairSpring& s)
+	{
+		return { std::max(s.normal, s.shear), std::max(s.bending, s.torsion) + s.shear * s.arm1 * s.arm1 };
+	}
+	Stiffness ofSecond(const PairSpring& s)
+	{
+		return { std::max(s.normal, s.shear), std::max(s.bending, s.torsion) + s.shear * s.arm2 * s.arm2 };
+	}
 
 	/// What a particle gives to one spring: 1/mass and 1/inertia of its share.
 	struct Mobility {
@@ -35,10 +41,12 @@ namespace {
 	{
 		const double translation = a.translation + b.translation, rotation = a.rotation + b.rotation;
 		// Shear and bending of one plane meet in the rotations: γ = u2 - u1 - arm1 φ1 - arm2 φ2, κ = φ2 - φ1.
-		const double shear    = s.shear * (translation + s.arm1 * s.arm1 * a.rotation + s.arm2 * s.arm2 * b.rotation);
+		const double shear
+		        = s.shear * (translation + s.arm1 * s.arm1 * a.rotation + s.arm2 * s.arm2 * b.rotation);
 		const double bending  = s.bending * rotation;
 		const double coupling = s.arm1 * a.rotation - s.arm2 * b.rotation;
-		const double plane    = 0.5 * (shear + bending) + std::hypot(0.5 * (shear - bending), std::sqrt(s.shear * s.bending) * coupling);
+		const double plane    = 0.5 * (shear + bending)
+		        + std::hypot(0.5 * (shear - bending), std::sqrt(s.shear * s.bending) * coupling);
 		return std::max({ s.normal * translation, s.torsion * rotation, plane });
 	}
 
@@ -63,7 +71,11 @@ double stableStep(const std::vector<ParticleMass>& particles, const std::vector<
 	};
 	double highest = 0;
 	for (const PairSpring& spring : springs)
-		highest = std::max(highest, highestEigenvalue(spring, mobility(spring.first, ofFirst(spring)), mobility(spring.second, ofSecond(spring))));
+		highest = std::max(
+		        highest,
+		        highestEigenvalue(
+		                spring, mobility(spring.first, ofFirst(spring)),
+		                mobility(spring.second, ofSecond(spring))));
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 

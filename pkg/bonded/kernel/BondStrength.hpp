@@ -9,12 +9,15 @@
 
 namespace yade::ddem {
 
-/// Strength of the cement: shear strength C - σ tan φ (tension positive; eq. 8 of the report with σ_N = -σ) and a limit in tension.
+/// Strength of the cement: shear strength C - σ tan φ (tension positive;
+/// eq. 8 of the report with σ_N = -σ) and a limit in tension.
 struct MohrCoulomb {
 	double cohesion;                                                  ///< C [Pa]
 	double frictionCoefficient;                                       ///< tan φ [-]
-	double tensileStrength = std::numeric_limits<double>::infinity(); ///< cut-off below the apex C/tan φ of the envelope [Pa]
-	double tensionLimit() const { return std::min(tensileStrength, cohesion / frictionCoefficient); } ///< largest σ the bond can bear [Pa]
+	/// cut-off below the apex C/tan φ of the envelope [Pa]
+	double tensileStrength = std::numeric_limits<double>::infinity();
+	/// largest σ the bond can bear [Pa]
+	double tensionLimit() const { return std::min(tensileStrength, cohesion / frictionCoefficient); }
 };
 
 /// Largest stresses at the rim of the cross-section in the middle of the bond.
@@ -31,32 +34,43 @@ enum class BondFailure {
 	Shear
 };
 
-template <class Number> inline BondStressOf<Number> bondStress(const BondSectionOf<Number>& section, const BondResultantsOf<Number>& load)
+template <class Number>
+inline BondStressOf<Number> bondStress(const BondSectionOf<Number>& section, const BondResultantsOf<Number>& load)
 {
 	using std::abs;
 	using std::sqrt;
 	const Number bending = sqrt(load.moment.y * load.moment.y + load.moment.z * load.moment.z),
 	             shear   = sqrt(load.force.y * load.force.y + load.force.z * load.force.z);
-	return { load.force.x / section.area + bending / section.bendingModulus, shear / section.area + abs(load.moment.x) / section.torsionModulus };
+	return { load.force.x / section.area + bending / section.bendingModulus,
+		 shear / section.area + abs(load.moment.x) / section.torsionModulus };
 }
 
-/// How far a bond is beyond its strength [Pa]; it breaks above zero. There is no limit in pure compression, as in ESyS-Particle.
+/// How far a bond is beyond its strength [Pa]; it breaks above zero. There is no limit in pure compression,
+/// as in ESyS-Particle.
 template <class Number>
-inline Number bondOverload(const Number& cohesion, const Number& frictionCoefficient, const Number& tensionLimit, const BondStressOf<Number>& stress)
+inline Number bondOverload(
+        const Number& cohesion, const Number& frictionCoefficient, const Number& tensionLimit,
+        const BondStressOf<Number>& stress)
 {
-	const Number tension = stress.normal - tensionLimit, shear = stress.shear - (cohesion - stress.normal * frictionCoefficient);
+	const Number tension = stress.normal - tensionLimit,
+	             shear = stress.shear - (cohesion - stress.normal * frictionCoefficient);
 	return select(tension > shear, tension, shear);
 }
 
-/// The mode of a bond that breaks. Both criteria meet at the apex, so without a lower cut-off the larger share names it.
+/// The mode of a bond that breaks. Both criteria meet at the apex, so without a lower cut-off
+/// the larger share names it.
 inline BondFailure failureMode(const MohrCoulomb& strength, const BondStress& stress)
 {
-	return stress.normal > strength.tensionLimit() || stress.normal * strength.frictionCoefficient > stress.shear ? BondFailure::Tension : BondFailure::Shear;
+	return stress.normal > strength.tensionLimit() || stress.normal * strength.frictionCoefficient > stress.shear
+	        ? BondFailure::Tension
+	        : BondFailure::Shear;
 }
 
 inline BondFailure bondFailure(const MohrCoulomb& strength, const BondStress& stress)
 {
-	return bondOverload(strength.cohesion, strength.frictionCoefficient, strength.tensionLimit(), stress) > 0 ? failureMode(strength, stress) : BondFailure::None;
+	return bondOverload(strength.cohesion, strength.frictionCoefficient, strength.tensionLimit(), stress) > 0
+	        ? failureMode(strength, stress)
+	        : BondFailure::None;
 }
 
 } // namespace yade::ddem

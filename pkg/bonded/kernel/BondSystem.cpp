@@ -29,17 +29,31 @@ BondLoop selectBondLoop(BondConvention convention)
 
 void BondSystem::clear() { *this = BondSystem(); }
 
-void BondSystem::add(std::int32_t firstParticle, std::int32_t secondParticle, const Bond& bond, const MohrCoulomb& strength)
+void BondSystem::add(
+        std::int32_t firstParticle, std::int32_t secondParticle, const Bond& bond, const MohrCoulomb& strength)
 {
 	if (first.size() != count) throw std::logic_error("BondSystem: bonds are added before it is assembled");
 	count++;
 	first.push_back(firstParticle);
 	second.push_back(secondParticle);
-	const double values[ConstantCount]
-	        = { bond.stiffness.normal, bond.stiffness.shear, bond.stiffness.bending, bond.stiffness.torsion, bond.length,   bond.radius1,
-		    bond.radius2,          bond.frame1.w,        bond.frame1.x,          bond.frame1.y,          bond.frame1.z, bond.frame2.w,
-		    bond.frame2.x,         bond.frame2.y,        bond.frame2.z,          strength.cohesion,      strength.frictionCoefficient,
-		    strength.tensionLimit() };
+	const double values[ConstantCount] = { bond.stiffness.normal,
+		                               bond.stiffness.shear,
+		                               bond.stiffness.bending,
+		                               bond.stiffness.torsion,
+		                               bond.length,
+		                               bond.radius1,
+		                               bond.radius2,
+		                               bond.frame1.w,
+		                               bond.frame1.x,
+		                               bond.frame1.y,
+		                               bond.frame1.z,
+		                               bond.frame2.w,
+		                               bond.frame2.x,
+		                               bond.frame2.y,
+		                               bond.frame2.z,
+		                               strength.cohesion,
+		                               strength.frictionCoefficient,
+		                               strength.tensionLimit() };
 	for (std::size_t k = 0; k < ConstantCount; k++)
 		constants[k].push_back(values[k]);
 }
@@ -51,7 +65,8 @@ void BondSystem::assemble(std::size_t particleCount)
 	collectStart.assign(particleCount + 1, 0);
 	for (const auto* list : { &first, &second })
 		for (const std::int32_t p : *list) {
-			if (p < 0 || std::size_t(p) >= particleCount) throw std::logic_error("BondSystem: a bond names a particle that does not exist");
+			if (p < 0 || std::size_t(p) >= particleCount)
+				throw std::logic_error("BondSystem: a bond names a particle that does not exist");
 			collectStart[std::size_t(p) + 1]++;
 		}
 	for (std::size_t p = 0; p < particleCount; p++)
@@ -63,7 +78,8 @@ void BondSystem::assemble(std::size_t particleCount)
 		collectRow[next[std::size_t(second[j])]++] = std::int32_t(2 * j + 1);
 	}
 
-	// What SIMD batches read beyond the end: the last bond again, without strength limit; nobody collects its results.
+	// What SIMD batches read beyond the end: the last bond again, without strength limit;
+	// nobody collects its results.
 	const std::size_t length = padded(count);
 	for (auto* list : { &first, &second })
 		list->resize(length, count ? list->back() : 0);
@@ -72,7 +88,9 @@ void BondSystem::assemble(std::size_t particleCount)
 		list.resize(length, count ? list.back() : 0.);
 	}
 	for (const Constant k : { Cohesion, TensionLimit })
-		std::fill(constants[k].begin() + std::ptrdiff_t(count), constants[k].end(), std::numeric_limits<double>::infinity());
+		std::fill(
+		        constants[k].begin() + std::ptrdiff_t(count), constants[k].end(),
+		        std::numeric_limits<double>::infinity());
 	rows.assign(length, Row {});
 	pose.assign(8 * particleCount, 0.);
 	load.assign(6 * particleCount, 0.);
@@ -81,18 +99,20 @@ void BondSystem::assemble(std::size_t particleCount)
 double BondSystem::step(BondConvention convention, bool energy, std::vector<std::int32_t>& overloaded)
 {
 	overloaded.clear();
-	BondArrays        arrays { first.data(), second.data(), pose.data(), {}, reinterpret_cast<double*>(rows.data()) };
+	BondArrays arrays { first.data(), second.data(), pose.data(), {}, reinterpret_cast<double*>(rows.data()) };
 	for (std::size_t k = 0; k < ConstantCount; k++)
 		arrays.constant[k] = constants[k].data();
 	const BondLoop    loop   = selectBondLoop(convention);
-	const auto        chunks = std::ptrdiff_t((count + bondsPerChunk - 1) / bondsPerChunk), all = std::ptrdiff_t(particles());
+	const auto chunks = std::ptrdiff_t((count + bondsPerChunk - 1) / bondsPerChunk),
+	           all = std::ptrdiff_t(particles());
 	std::vector<char> over(std::size_t(chunks), 0);
 	std::vector<double> stored(std::size_t(chunks), 0.);
 #pragma omp parallel
 	{
 #pragma omp for schedule(static)
 		for (std::ptrdiff_t c = 0; c < chunks; c++) {
-			const std::size_t begin = std::size_t(c) * bondsPerChunk, end = std::min(begin + bondsPerChunk, count);
+			const std::size_t begin = std::size_t(c) * bondsPerChunk,
+			                  end = std::min(begin + bondsPerChunk, count);
 			over[std::size_t(c)] = loop(arrays, begin, end);
 			if (energy)
 				for (std::size_t j = begin; j < end; j++)
@@ -109,7 +129,11 @@ double BondSystem::step(BondConvention convention, bool energy, std::vector<std:
 		const std::size_t begin = std::size_t(c) * bondsPerChunk, end = std::min(begin + bondsPerChunk, count);
 		for (std::size_t j = begin; j < end; j++) {
 			const BondStress stress { rows[j].normalStress, rows[j].shearStress };
-			if (!(bondOverload(constants[Cohesion][j], constants[Friction][j], constants[TensionLimit][j], stress) <= 0)) overloaded.push_back(std::int32_t(j));
+			if (!(bondOverload(
+			              constants[Cohesion][j], constants[Friction][j], constants[TensionLimit][j],
+			              stress)
+			      <= 0))
+				overloaded.push_back(std::int32_t(j));
 		}
 	}
 	return sum;
@@ -117,7 +141,8 @@ double BondSystem::step(BondConvention convention, bool energy, std::vector<std:
 
 void BondSystem::remove(std::size_t bond)
 {
-	for (const Constant k : { Normal, Shear, Bending, Torsion }) // computed as before, in its batch, but without effect
+	// computed as before, in its batch, but without effect
+	for (const Constant k : { Normal, Shear, Bending, Torsion })
 		constants[k][bond] = 0;
 	constants[Cohesion][bond] = constants[TensionLimit][bond] = std::numeric_limits<double>::infinity();
 	rows[bond]                                                = Row {};

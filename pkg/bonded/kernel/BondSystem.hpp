@@ -1,8 +1,8 @@
 // GPL v2 or later, see LICENSE.
 // All bonds of a sample as arrays, evaluated together.
 //
-// Bonds are computed a SIMD batch at a time, each into a row of its own; then every particle collects the rows of its bonds in a fixed order. So results do not
-// depend on the number of threads, bit by bit.
+// Bonds are computed a SIMD batch at a time, each into a row of its own; then every particle collects the rows of its
+// bonds in a fixed order. So results do not depend on the number of threads, bit by bit.
 #pragma once
 
 #include <pkg/bonded/kernel/BondStrength.hpp>
@@ -28,7 +28,8 @@ inline BondLoads bondLoads(
         const SpaceRotation<double>&    orientation1,
         const SpaceRotation<double>&    orientation2)
 {
-	return convention == BondConvention::Esys ? esysBondLoads(bond, branch, orientation1, orientation2) : bondLoads(bond, branch, orientation1, orientation2);
+	return convention == BondConvention::Esys ? esysBondLoads(bond, branch, orientation1, orientation2)
+	                                          : bondLoads(bond, branch, orientation1, orientation2);
 }
 
 class BondSystem {
@@ -44,24 +45,41 @@ public:
 	};
 
 	/// Constants of every bond, a list each.
-	enum Constant { Normal, Shear, Bending, Torsion, Length, Radius1, Radius2, Frame1, Frame2 = Frame1 + 4, Cohesion = Frame2 + 4, Friction, TensionLimit, ConstantCount };
+	enum Constant {
+		Normal,
+		Shear,
+		Bending,
+		Torsion,
+		Length,
+		Radius1,
+		Radius2,
+		Frame1,
+		Frame2   = Frame1 + 4,
+		Cohesion = Frame2 + 4,
+		Friction,
+		TensionLimit,
+		ConstantCount
+	};
 
 	void clear();
 	/// \param first,second places of the particles in \ref pose
 	void add(std::int32_t first, std::int32_t second, const Bond& bond, const MohrCoulomb& strength);
-	/// To be called once all bonds have been added. \throws std::logic_error if a bond names a particle that does not exist
+	/// To be called once all bonds have been added. \throws std::logic_error if a bond names
+	/// a particle that does not exist
 	void assemble(std::size_t particles);
 
 	std::size_t size() const { return count; }
 	std::size_t particles() const { return collectStart.size() - 1; }
 
-	/// Position x, y, z and orientation w, x, y, z of every particle, to be set before each step; the fourth of eight numbers is not used.
+	/// Position x, y, z and orientation w, x, y, z of every particle, to be set before each step;
+	/// the fourth of eight numbers is not used.
 	std::vector<double> pose;
 	/// Force and moment about the centre that the bonds put on every particle, six numbers [N, N·m].
 	std::vector<double> load;
 
 	/** Computes all bonds and collects their loads.
-	 * \param overloaded gets the bonds beyond their strength or with stresses that are not a number, in order; their loads are included
+	 * \param overloaded gets the bonds beyond their strength or with stresses that are not a number, in order;
+	 * their loads are included
 	 * \param energy whether to add up the stored energy
 	 * \returns stored energy [J], 0 unless asked for
 	 */
@@ -79,7 +97,8 @@ private:
 	void collect(std::size_t particle);
 
 	std::size_t                                    count = 0;
-	std::vector<std::int32_t>                      first, second; ///< like all constants padded to whole SIMD batches once assembled
+	/// like all constants padded to whole SIMD batches once assembled
+	std::vector<std::int32_t>                      first, second;
 	std::array<std::vector<double>, ConstantCount> constants;
 	std::vector<Row>                               rows;
 	std::vector<std::size_t>                       collectStart { 0 };

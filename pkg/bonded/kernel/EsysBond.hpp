@@ -1,11 +1,14 @@
 // GPL v2 or later, see LICENSE.
-// The elastic bond as ESyS-Particle 2.3.5 computes it (class CRotBondedInteraction; Wang, Acta Geotechnica 4, 2009), to compare with that program.
+// The elastic bond as ESyS-Particle 2.3.5 computes it (class CRotBondedInteraction; Wang, Acta Geotechnica 4, 2009),
+// to compare with that program.
 //
 // It differs from the consistent bond of BondLaw.hpp in
 //  - its rest length, the sum r0 of the radii: a bond made across a gap starts under tension;
 //  - bending, ½ E I/d0 per relative rotation instead of E I/d0;
-//  - kinematics with the half length r0/2 for both particles but moment arms r1 and r2: for unequal radii it does not derive from an energy.
-// Like the other it is total, not incremental. Angles are taken from atan2 where ESyS takes them from acos, which has a noise of 1.5e-8 rad.
+//  - kinematics with the half length r0/2 for both particles but moment arms r1 and r2: for unequal radii it does not
+//    derive from an energy.
+// Like the other it is total, not incremental. Angles are taken from atan2 where ESyS takes them from acos,
+// which has a noise of 1.5e-8 rad.
 #pragma once
 
 #include <pkg/bonded/kernel/BondLaw.hpp>
@@ -25,8 +28,9 @@ template <class Number> inline SpaceVector<Number> lengthenedToAngle(const Space
 
 /// Loads of a bond; arguments as for bondLoads.
 template <class Number>
-inline BondLoadsOf<Number>
-esysBondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, const SpaceRotation<Number>& orientation1, const SpaceRotation<Number>& orientation2)
+inline BondLoadsOf<Number> esysBondLoads(
+        const BondOf<Number>& bond, const SpaceVector<Number>& branch, const SpaceRotation<Number>& orientation1,
+        const SpaceRotation<Number>& orientation2)
 {
 	using std::atan2;
 	// All in the axes of particle 1, turned so that the first one lies along the bond as it was made.
@@ -48,7 +52,9 @@ esysBondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, con
 	const SpaceVector<Number> theta = lengthenedToAngle(image - along * n, along);
 	const Number              sign  = select(turn.w < Number(0.), Number(-1.), Number(1.));
 	// half a turn about an axis across n has no twist, and in lanes atan2(0, 0) is not a number
-	const Number              psi   = 2. * atan2(sign * dot(v, n), select(turn.w * turn.w + dot(v, n) * dot(v, n) > Number(0.), sign * turn.w, Number(1.)));
+	const Number psi = 2.
+	        * atan2(sign * dot(v, n),
+	                select(turn.w * turn.w + dot(v, n) * dot(v, n) > Number(0.), sign * turn.w, Number(1.)));
 
 	const BondStiffnessOf<Number>& k      = bond.stiffness;
 	const Number                   normal = k.normal * (L - r0);
@@ -65,7 +71,7 @@ esysBondLoads(const BondOf<Number>& bond, const SpaceVector<Number>& branch, con
 	loads.axis           = axes.vector(n);
 	loads.section.force  = { normal, norm(shear), Number(0.) };
 	loads.section.moment = { twist, norm(bend), Number(0.) };
-	loads.energy         = 0.5 * (normal * (L - r0) + dot(shear, slip) + 0.5 * k.bending * dot(theta, theta) + twist * psi);
+	loads.energy = 0.5 * (normal * (L - r0) + dot(shear, slip) + 0.5 * k.bending * dot(theta, theta) + twist * psi);
 	return loads;
 }
 

@@ -2,8 +2,10 @@
 // Frictional contact as ESyS-Particle 2.3.5 computes it (class CRotFrictionInteraction), to compare with that program.
 //
 // It differs from the contact of BondContact.hpp in
-//  - its memory: after a slip, which drops the force to dynamic friction, it sticks again until static friction is reached (a saw-tooth);
-//  - its tangential force, which does not turn with the pair, and slip taken at the contact point, which depends on the overlap.
+//  - its memory: after a slip, which drops the force to dynamic friction, it sticks again until static friction is
+//    reached (a saw-tooth);
+//  - its tangential force, which does not turn with the pair, and slip taken at the contact point,
+//    which depends on the overlap.
 #pragma once
 
 #include <pkg/bonded/kernel/BondContact.hpp>
@@ -11,8 +13,9 @@
 namespace yade::ddem {
 
 /// One step of a contact; arguments as for contactLoads.
-inline ContactLoads
-esysContactLoads(const ContactStiffness& stiffness, const ContactFriction& friction, const ContactMotion& motion, double dt, ContactMemory& memory)
+inline ContactLoads esysContactLoads(
+        const ContactStiffness& stiffness, const ContactFriction& friction, const ContactMotion& motion, double dt,
+        ContactMemory& memory)
 {
 	using Eigen::Vector3d;
 	const double    reach = motion.radius1 + motion.radius2, overlap = reach - motion.distance;
@@ -23,8 +26,11 @@ esysContactLoads(const ContactStiffness& stiffness, const ContactFriction& frict
 		memory           = ContactMemory();
 		return loads;
 	}
-	const double arm1 = motion.radius1 / reach * motion.distance, arm2 = motion.radius2 / reach * motion.distance; // to the contact point, along the branch
-	Vector3d     slip = dt * (motion.relativeVelocity - (arm1 * motion.angularVelocity1 + arm2 * motion.angularVelocity2).cross(n));
+	// to the contact point, along the branch
+	const double arm1 = motion.radius1 / reach * motion.distance, arm2 = motion.radius2 / reach * motion.distance;
+	Vector3d     slip = dt
+	        * (motion.relativeVelocity
+	           - (arm1 * motion.angularVelocity1 + arm2 * motion.angularVelocity2).cross(n));
 	slip -= n.dot(slip) * n;
 
 	const Vector3d before = memory.shear;

@@ -1,6 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// The Python extension yade.ddem._materialpoint: the material-point driver of every law. Users call yade.ddem.materialpoint, which adds
-// names and checks.
+// The Python extension yade.ddem._materialpoint: the material-point driver of every law. Users call
+// yade.ddem.materialpoint, which adds names and checks.
 
 #include <boost/python.hpp>
 #include <boost/python/numpy.hpp>
@@ -34,31 +34,46 @@ namespace {
 		std::vector<double>& row;
 
 		void scalar(const char*, const char*, double& from) { row.push_back(from); }
-		void inPlane(const char*, const char*, PlaneTensor& from) { row.insert(row.end(), { from.xx, from.yy, from.xy }); }
-		void tensor(const char*, const char*, PlaneTensor& from) { row.insert(row.end(), { from.xx, from.yy, from.zz, from.xy }); }
+		void inPlane(const char*, const char*, PlaneTensor& from)
+		{
+			row.insert(row.end(), { from.xx, from.yy, from.xy });
+		}
+		void tensor(const char*, const char*, PlaneTensor& from)
+		{
+			row.insert(row.end(), { from.xx, from.yy, from.zz, from.xy });
+		}
 	};
 
-	/// A point of any law. A row of results: time, strain, stress, stored, plastic and damage energy, damage, factor on the moduli, fields.
+	/// A point of any law. A row of results: time, strain, stress, stored, plastic and damage energy, damage,
+	/// factor on the moduli, fields.
 	class Point {
 	public:
 		virtual ~Point() = default;
 
 		virtual np::ndarray
-		run(const std::string& control, const py::object& target, double duration, std::size_t steps, std::size_t every) = 0;
-		virtual np::ndarray row() const                                                                                    = 0;
-		virtual py::list    fields() const                                                                                 = 0;
+		run(const std::string& control, const py::object& target, double duration, std::size_t steps,
+		    std::size_t every)
+		        = 0;
+		virtual np::ndarray row() const    = 0;
+		virtual py::list    fields() const = 0;
 	};
 
 	template <class Law> class PointFor : public Point {
 	public:
-		PointFor(const typename Law::Parameters& parameters, unsigned effects, const TriangleProperties& properties)
+		PointFor(
+		        const typename Law::Parameters& parameters, unsigned effects,
+		        const TriangleProperties& properties)
 		        : point(parameters, effects, properties)
 		{
 		}
 		np::ndarray
-		run(const std::string& control, const py::object& target, double duration, std::size_t steps, std::size_t every) override
+		run(const std::string& control, const py::object& target, double duration, std::size_t steps,
+		    std::size_t every) override
 		{
-			PathLeg leg { { Control::Strain, Control::Strain, Control::Strain, Control::Strain }, tensorFrom(target), duration, steps };
+			PathLeg leg { { Control::Strain, Control::Strain, Control::Strain, Control::Strain },
+				      tensorFrom(target),
+				      duration,
+				      steps };
 			for (std::size_t k = 0; k < 4; ++k)
 				if (control.at(k) == 's') leg.control[k] = Control::Stress;
 			return rows(point.run(leg, every));
@@ -88,13 +103,19 @@ namespace {
 				for (const PlaneTensor* t : { &p.strain, &p.stress })
 					numbers.insert(numbers.end(), { t->xx, t->yy, t->zz, t->xy });
 				const auto& law = point.prepared();
-				numbers.insert(numbers.end(), { p.energies.stored, p.energies.plastic, p.energies.damage });
-				numbers.push_back(Law::damages(point.effects()) ? Law::damage(law, point.properties(), p.state) : 0);
+				numbers.insert(
+				        numbers.end(), { p.energies.stored, p.energies.plastic, p.energies.damage });
+				numbers.push_back(
+				        Law::damages(point.effects()) ? Law::damage(law, point.properties(), p.state)
+				                                      : 0);
 				numbers.push_back(Law::stiffens(point.effects()) ? Law::stiffening(law, p.state) : 1);
-				withMask<Law>(point.effects(), [&](auto mask) { Law::template fields<mask()>(p.state, WriteFields { numbers }); });
+				withMask<Law>(point.effects(), [&](auto mask) {
+					Law::template fields<mask()>(p.state, WriteFields { numbers });
+				});
 			}
 			const std::size_t columns = points.empty() ? 0 : numbers.size() / points.size();
-			np::ndarray result = np::empty(py::make_tuple(points.size(), columns), np::dtype::get_builtin<double>());
+			np::ndarray       result
+			        = np::empty(py::make_tuple(points.size(), columns), np::dtype::get_builtin<double>());
 			std::copy(numbers.begin(), numbers.end(), reinterpret_cast<double*>(result.get_data()));
 			return result;
 		}
@@ -129,9 +150,15 @@ namespace {
 			return { Law::name,
 				 Law::Parameters::entries(),
 				 Law::effects(),
-				 [](const py::dict& values) { typename Law::Prepared prepared(parametersOf<Law>(values)); (void)prepared; },
-				 [](const py::dict& values, unsigned effects, const TriangleProperties& properties) -> std::shared_ptr<Point> {
-					 return std::make_shared<PointFor<Law>>(parametersOf<Law>(values), effects, properties);
+				 [](const py::dict& values) {
+				         typename Law::Prepared prepared(parametersOf<Law>(values));
+				         (void)prepared;
+				 },
+				 [](const py::dict&           values,
+				    unsigned                  effects,
+				    const TriangleProperties& properties) -> std::shared_ptr<Point> {
+				         return std::make_shared<PointFor<Law>>(
+				                 parametersOf<Law>(values), effects, properties);
 				 } };
 		}
 	};
@@ -173,7 +200,8 @@ namespace {
 	void validate(const std::string& law, const py::dict& values) { lawNamed(law).validate(values); }
 
 	std::shared_ptr<Point> makePoint(
-	        const std::string& law, const py::dict& values, unsigned mask, const py::object& damage, double bandFactor, double area)
+	        const std::string& law, const py::dict& values, unsigned mask, const py::object& damage,
+	        double bandFactor, double area)
 	{
 		return lawNamed(law).make(values, mask, { area, -1, bandFactor, tensorFrom(damage) });
 	}
@@ -186,19 +214,21 @@ BOOST_PYTHON_MODULE(_materialpoint)
 	using namespace yade::ddem;
 	np::initialize();
 	py::def("laws", laws, "Names of all laws.");
-	py::def("parameters", parameters, py::arg("law"), "Parameters of a law: (name, default, unit, bounds in words, meaning).");
+	py::def("parameters", parameters, py::arg("law"),
+	        "Parameters of a law: (name, default, unit, bounds in words, meaning).");
 	py::def("effects", effects, py::arg("law"), "Bits of a law's effects by name.");
-	py::def("validate", validate, (py::arg("law"), py::arg("values")), "ValueError for a parameter that is not allowed.");
+	py::def("validate", validate, (py::arg("law"), py::arg("values")),
+	        "ValueError for a parameter that is not allowed.");
 	py::class_<Point, std::shared_ptr<Point>, boost::noncopyable>("Point", py::no_init)
 	        .def("__init__",
 	             py::make_constructor(
-	                     makePoint,
-	                     py::default_call_policies(),
-	                     (py::arg("law"), py::arg("parameters"), py::arg("effects"), py::arg("damage"), py::arg("bandFactor"), py::arg("area"))))
-	        .def("run",
-	             &Point::run,
+	                     makePoint, py::default_call_policies(),
+	                     (py::arg("law"), py::arg("parameters"), py::arg("effects"), py::arg("damage"),
+	                      py::arg("bandFactor"), py::arg("area"))))
+	        .def("run", &Point::run,
 	             (py::arg("control"), py::arg("target"), py::arg("duration"), py::arg("steps"), py::arg("every")),
-	             "Runs a leg; control has a letter for xx, yy, zz, xy: 's' stress, 'e' strain. Returns a row per recorded step.")
+	             "Runs a leg; control has a letter for xx, yy, zz, xy: 's' stress, 'e' strain. Returns a row per "
+	             "recorded step.")
 	        .def("row", &Point::row, "The present state as one row.")
 	        .def("fields", &Point::fields, "Fields at the end of a row: (name, unit, components).");
 	py::scope().attr("energy") = unsigned(LawEffects::Energy);

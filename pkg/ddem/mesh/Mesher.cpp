@@ -22,14 +22,17 @@ namespace yade::ddem::mesh {
 
 namespace {
 	using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-	// Time stamps order the generator's sets of vertices by creation instead of by address, so that the same input gives the same mesh in every process.
+	// Time stamps order the generator's sets of vertices by creation instead of by address, so that the same input
+	// gives the same mesh in every process.
 	using Vertex     = CGAL::Base_with_time_stamp<CGAL::Delaunay_mesh_vertex_base_2<Kernel>>;
 	using Face       = CGAL::Delaunay_mesh_face_base_2<Kernel>;
-	using Base       = CGAL::Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, Face>>;
+	using Base       = CGAL::
+	        Constrained_Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertex, Face>>;
 	using FaceHandle = Base::Face_handle;
 
-	// A triangulation that looks for the place of a new node near the node touched last. Smoothing takes every node out and puts it back nearby; searching
-	// for its place from a far corner each time would make it quadratic in the number of nodes.
+	// A triangulation that looks for the place of a new node near the node touched last. Smoothing takes every node
+	// out and puts it back nearby; searching for its place from a far corner each time would make it quadratic
+	// in the number of nodes.
 	class Cdt : public Base {
 		Vertex_handle last;
 
@@ -44,7 +47,8 @@ namespace {
 			last = vertex->face()->vertex(Base::ccw(vertex->face()->index(vertex)));
 			Base::remove(vertex);
 		}
-		// Number the nodes along a curve that fills the plane, so that the way from one node to the next is short. Forgets what is inside.
+		// Number the nodes along a curve that fills the plane, so that the way from one node to the next is
+		// short. Forgets what is inside.
 		void renumber()
 		{
 			std::vector<Point>                               points;
@@ -55,16 +59,22 @@ namespace {
 				points.push_back(vertex->point());
 			}
 			for (const Edge& edge : constrained_edges())
-				constraints.emplace_back(index.at(edge.first->vertex(cw(edge.second))), index.at(edge.first->vertex(ccw(edge.second))));
+				constraints.emplace_back(
+				        index.at(edge.first->vertex(cw(edge.second))),
+				        index.at(edge.first->vertex(ccw(edge.second))));
 			clear();
 			last = Vertex_handle();
 			insert_constraints(points.begin(), points.end(), constraints.begin(), constraints.end());
 		}
 	};
 
-	Kernel::Point_2 centroid(FaceHandle face) { return CGAL::centroid(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point()); }
+	Kernel::Point_2 centroid(FaceHandle face)
+	{
+		return CGAL::centroid(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point());
+	}
 
-	// CGAL's criterion (angle bound first, then longest edge), with the size taken from the field at each triangle's centroid.
+	// CGAL's criterion (angle bound first, then longest edge), with the size taken from the field at
+	// each triangle's centroid.
 	class SizeFieldCriteria : public CGAL::Delaunay_mesh_size_criteria_2<Cdt> {
 		using Uniform = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
 		const Criteria* wanted;
@@ -88,11 +98,16 @@ namespace {
 			CGAL::Mesh_2::Face_badness operator()(FaceHandle face, Quality& quality) const
 			{
 				const Kernel::Point_2 middle = centroid(face);
-				return at(field->wanted->longestEdgeFactor * field->wanted->size(middle.x(), middle.y()))(face, quality);
+				return at(
+				        field->wanted->longestEdgeFactor
+				        * field->wanted->size(middle.x(), middle.y()))(face, quality);
 			}
 
 		private:
-			Uniform::Is_bad at(double longestEdge) const { return { field->bound(), longestEdge, field->traits }; }
+			Uniform::Is_bad at(double longestEdge) const
+			{
+				return { field->bound(), longestEdge, field->traits };
+			}
 		};
 		Is_bad is_bad_object() const { return { *this }; }
 	};
@@ -156,8 +171,10 @@ Triangulation triangulate(const Domain& domain, const Criteria& criteria)
 	if (criteria.smoothing > 0) {
 		cdt.renumber();
 		CGAL::Delaunay_mesher_2<Cdt, SizeFieldCriteria>::mark_facets(cdt, seeds.begin(), seeds.end());
-		CGAL::lloyd_optimize_mesh_2(cdt, CGAL::parameters::number_of_iterations(std::size_t(criteria.smoothing)).seeds(seeds));
-		// Smoothing evens the edges out, a few grow a little; splitting these again would undo its work, so only the angle bound is restored strictly.
+		CGAL::lloyd_optimize_mesh_2(
+		        cdt, CGAL::parameters::number_of_iterations(std::size_t(criteria.smoothing)).seeds(seeds));
+		// Smoothing evens the edges out, a few grow a little; splitting these again would undo its work,
+		// so only the angle bound is restored strictly.
 		Criteria lenient = criteria;
 		lenient.longestEdgeFactor *= 1.25;
 		refine(cdt, seeds, lenient);
@@ -170,7 +187,8 @@ Triangulation triangulate(const Domain& domain, const Criteria& criteria)
 		std::array<int, 3> corners;
 		for (int k = 0; k < 3; ++k) {
 			const auto [place, isNew] = index.try_emplace(face->vertex(k), int(result.nodes.size()));
-			if (isNew) result.nodes.push_back({ face->vertex(k)->point().x(), face->vertex(k)->point().y() });
+			if (isNew)
+				result.nodes.push_back({ face->vertex(k)->point().x(), face->vertex(k)->point().y() });
 			corners[std::size_t(k)] = place->second;
 		}
 		result.triangles.push_back(corners);

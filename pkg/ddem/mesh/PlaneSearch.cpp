@@ -16,7 +16,8 @@ namespace yade::ddem::mesh {
 
 namespace {
 	using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-	using Box    = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>; // a bounding box and the number of what it bounds
+	// a bounding box and the number of what it bounds
+	using Box    = CGAL::Box_intersection_d::Box_with_info_d<double, 2, std::size_t>;
 
 	std::vector<Kernel::Point_2> toKernel(const std::vector<Point>& points)
 	{
@@ -27,10 +28,12 @@ namespace {
 		return result;
 	}
 
-	// The lexicographically smallest of the pairs for which `conflict` says yes, so that the answer does not depend on the order of the search.
+	// The lexicographically smallest of the pairs for which `conflict` says yes, so that the answer does not depend
+	// on the order of the search.
 	template <std::size_t corners, class Conflicts>
-	std::optional<std::pair<std::size_t, std::size_t>>
-	firstPair(const std::vector<Kernel::Point_2>& points, const std::vector<std::array<int, corners>>& items, const Conflicts& conflict)
+	std::optional<std::pair<std::size_t, std::size_t>> firstPair(
+	        const std::vector<Kernel::Point_2>& points, const std::vector<std::array<int, corners>>& items,
+	        const Conflicts& conflict)
 	{
 		std::vector<Box> boxes;
 		boxes.reserve(items.size());
@@ -52,7 +55,10 @@ namespace {
 	bool separated(const std::array<Kernel::Point_2, 3>& a, const std::array<Kernel::Point_2, 3>& b)
 	{
 		for (std::size_t k = 0; k < 3; ++k) {
-			if (std::none_of(b.begin(), b.end(), [&](const Kernel::Point_2& p) { return CGAL::left_turn(a[k], a[(k + 1) % 3], p); })) return true;
+			if (std::none_of(b.begin(), b.end(), [&](const Kernel::Point_2& p) {
+				    return CGAL::left_turn(a[k], a[(k + 1) % 3], p);
+			    }))
+				return true;
 		}
 		return false;
 	}
@@ -64,15 +70,20 @@ std::vector<int> hilbertOrder(const std::vector<Point>& points)
 	std::vector<std::size_t> order(points.size());
 	std::iota(order.begin(), order.end(), std::size_t(0));
 	const auto place = CGAL::make_property_map(located);
-	// The middle policy cuts cells in half geometrically: the true Hilbert curve, and unlike the median policy indifferent to how points are spread.
-	CGAL::hilbert_sort(order.begin(), order.end(), CGAL::Spatial_sort_traits_adapter_2<Kernel, decltype(place)>(place), CGAL::Hilbert_sort_middle_policy());
+	// The middle policy cuts cells in half geometrically: the true Hilbert curve, and unlike the median policy
+	// indifferent to how points are spread.
+	CGAL::hilbert_sort(
+	        order.begin(), order.end(), CGAL::Spatial_sort_traits_adapter_2<Kernel, decltype(place)>(place),
+	        CGAL::Hilbert_sort_middle_policy());
 	return { order.begin(), order.end() };
 }
 
 std::optional<Crossing> firstCrossing(const std::vector<Point>& points, const std::vector<std::array<int, 2>>& segments)
 {
 	const auto located = toKernel(points);
-	const auto segment = [&](std::size_t i) { return Kernel::Segment_2(located[std::size_t(segments[i][0])], located[std::size_t(segments[i][1])]); };
+	const auto segment = [&](std::size_t i) {
+		return Kernel::Segment_2(located[std::size_t(segments[i][0])], located[std::size_t(segments[i][1])]);
+	};
 
 	const auto cross = [&](std::size_t i, std::size_t j) {
 		for (const int end : segments[j]) {
@@ -86,17 +97,21 @@ std::optional<Crossing> firstCrossing(const std::vector<Point>& points, const st
 	if (const auto common = CGAL::intersection(segment(pair->first), segment(pair->second))) {
 		if (const auto* point = std::get_if<Kernel::Point_2>(&*common)) at = *point;
 		else
-			at = CGAL::midpoint(std::get<Kernel::Segment_2>(*common).source(), std::get<Kernel::Segment_2>(*common).target());
+			at = CGAL::midpoint(
+			        std::get<Kernel::Segment_2>(*common).source(),
+			        std::get<Kernel::Segment_2>(*common).target());
 	}
 	return Crossing { int(pair->first), int(pair->second), { at.x(), at.y() } };
 }
 
-std::optional<Conflict> firstConflict(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles, double relativeGap)
+std::optional<Conflict>
+firstConflict(const std::vector<Point>& points, const std::vector<std::array<int, 3>>& triangles, double relativeGap)
 {
 	const auto located = toKernel(points);
 	const auto corners = [&](std::size_t i) {
 		const auto& t = triangles[i];
-		return std::array<Kernel::Point_2, 3> { located[std::size_t(t[0])], located[std::size_t(t[1])], located[std::size_t(t[2])] };
+		return std::array<Kernel::Point_2, 3> { located[std::size_t(t[0])], located[std::size_t(t[1])],
+			                                located[std::size_t(t[2])] };
 	};
 	// A node of triangle i inside an edge of triangle j, or -1.
 	const auto hanging = [&](std::size_t i, std::size_t j) {
@@ -105,9 +120,12 @@ std::optional<Conflict> firstConflict(const std::vector<Point>& points, const st
 			for (std::size_t k = 0; k < 3; ++k) {
 				const int a = triangles[j][k], b = triangles[j][(k + 1) % 3];
 				if (node == a || node == b) continue;
-				const auto   edge = located[std::size_t(b)] - located[std::size_t(a)], arm = p - located[std::size_t(a)];
+				const auto edge = located[std::size_t(b)] - located[std::size_t(a)],
+				           arm = p - located[std::size_t(a)];
 				const double length2 = edge.squared_length(), along = edge * arm;
-				if (along > 0 && along < length2 && std::abs(edge.x() * arm.y() - edge.y() * arm.x()) < relativeGap * length2) return node;
+				if (along > 0 && along < length2
+				    && std::abs(edge.x() * arm.y() - edge.y() * arm.x()) < relativeGap * length2)
+					return node;
 			}
 		}
 		return -1;

@@ -18,12 +18,14 @@ struct Crossing {
 };
 std::optional<Crossing> firstCrossing(const std::vector<Point>&, const std::vector<std::array<int, 2>>& segments);
 
-/// Two counter-clockwise triangles whose interiors overlap (node < 0), or a node of the first that lies inside an edge of the second ("hanging node").
+/// Two counter-clockwise triangles whose interiors overlap (node < 0), or a node of the first that lies inside an edge
+/// of the second ("hanging node").
 struct Conflict {
 	int first, second; // indices of triangles
 	int node;
 };
 /// `relativeGap`: a node hangs on an edge when it is closer to it than this times the edge's length.
-std::optional<Conflict> firstConflict(const std::vector<Point>&, const std::vector<std::array<int, 3>>& triangles, double relativeGap);
+std::optional<Conflict>
+firstConflict(const std::vector<Point>&, const std::vector<std::array<int, 3>>& triangles, double relativeGap);
 
 } // namespace yade::ddem::mesh

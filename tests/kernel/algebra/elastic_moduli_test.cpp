@@ -31,7 +31,8 @@ TEST(ElasticLaw, waveSpeedsOfConcrete) // c_0 5022, c_p 5191, c_s 3291 m/s for 2
 TEST(ElasticLaw, uniaxialStressFollowsYoungAndPoisson)
 {
 	const double      nu = concrete.poisson(), along = 1e-3;
-	const PlaneTensor stress = elasticStress(concrete.lambda(), 2 * concrete.shear, PlaneTensor { -nu * along, along, -nu * along, 0 });
+	const PlaneTensor stress = elasticStress(
+	        concrete.lambda(), 2 * concrete.shear, PlaneTensor { -nu * along, along, -nu * along, 0 });
 	EXPECT_NEAR(stress.yy, concrete.young() * along, 1e-6);
 	EXPECT_NEAR(stress.xx, 0, 1e-6);
 	EXPECT_NEAR(stress.zz, 0, 1e-6);
@@ -39,15 +40,20 @@ TEST(ElasticLaw, uniaxialStressFollowsYoungAndPoisson)
 
 TEST(ElasticLaw, pureShearAndPureVolume)
 {
-	EXPECT_DOUBLE_EQ(elasticStress(concrete.lambda(), 2 * concrete.shear, PlaneTensor { 0, 0, 0, 1e-3 }).xy, 52e6); // 2 μ ε_xy
-	EXPECT_DOUBLE_EQ(pressure(elasticStress(concrete.lambda(), 2 * concrete.shear, PlaneTensor { -1e-3, -1e-3, -1e-3, 0 })), 90e6);
+	// 2 μ ε_xy
+	EXPECT_DOUBLE_EQ(elasticStress(concrete.lambda(), 2 * concrete.shear, PlaneTensor { 0, 0, 0, 1e-3 }).xy, 52e6);
+	EXPECT_DOUBLE_EQ(
+	        pressure(elasticStress(concrete.lambda(), 2 * concrete.shear, PlaneTensor { -1e-3, -1e-3, -1e-3, 0 })),
+	        90e6);
 }
 
 TEST(ElasticLaw, energyIsHalfStressTimesStrain)
 {
 	const PlaneTensor strain { 1e-3, -2e-3, 0.4e-3, 0.7e-3 };
 	const double      lambda = concrete.lambda(), twoShear = 2 * concrete.shear;
-	EXPECT_NEAR(elasticEnergy(lambda, twoShear, strain), 0.5 * doubleDot(elasticStress(lambda, twoShear, strain), strain), 1e-9);
+	EXPECT_NEAR(
+	        elasticEnergy(lambda, twoShear, strain),
+	        0.5 * doubleDot(elasticStress(lambda, twoShear, strain), strain), 1e-9);
 }
 
 TEST(ElasticLaw, badModuliAreRefusedWithValueAndUnit)
@@ -61,14 +67,19 @@ TEST(ElasticLaw, badModuliAreRefusedWithValueAndUnit)
 		return "";
 	};
 	EXPECT_NE(
-	        message([] { ElasticModuli { -1e9, 1e9 }.validate(); }).find("bulk modulus must be a positive number of pascals, got -1e+09 Pa"),
+	        message([] {
+		        ElasticModuli { -1e9, 1e9 }.validate();
+	        }).find("bulk modulus must be a positive number of pascals, got -1e+09 Pa"),
 	        std::string::npos);
 	EXPECT_NE(message([] { ElasticModuli { 1e9, 0 }.validate(); }).find("shear modulus"), std::string::npos);
 	EXPECT_NE(message([] { ElasticModuli { NAN, 1e9 }.validate(); }).find("nan"), std::string::npos);
 	EXPECT_NE(message([] { ElasticModuli { 1e9, INFINITY }.validate(); }).find("inf"), std::string::npos);
 	EXPECT_NE(message([] { ElasticModuli { 1e14, 1e9 }.validate(); }).find("incompressible"), std::string::npos);
 	for (const double poisson : { 0.5, 0.7, -1., double(NAN) })
-		EXPECT_NE(message([&] { ElasticModuli::fromYoung(30e9, poisson); }).find("Poisson's ratio"), std::string::npos) << poisson;
+		EXPECT_NE(
+		        message([&] { ElasticModuli::fromYoung(30e9, poisson); }).find("Poisson's ratio"),
+		        std::string::npos)
+		        << poisson;
 	EXPECT_NE(message([] { ElasticModuli::fromYoung(0, 0.2); }).find("Young's modulus"), std::string::npos);
 	EXPECT_NO_THROW((ElasticModuli { 1000e9, 1e9 }.validate())); // B/μ = 1000 is a hard case, not an error
 }

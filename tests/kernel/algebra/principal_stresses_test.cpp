@@ -13,7 +13,10 @@ constexpr double tolerance = 0.05;
 
 PrincipalStresses<double> principal(const PlaneTensor& stress) { return principalStresses(stress, tolerance); }
 
-double distance(const PrincipalStresses<double>& a, const PrincipalStresses<double>& b) { return norm(a.n1 - b.n1) + norm(a.n3 - b.n3); }
+double distance(const PrincipalStresses<double>& a, const PrincipalStresses<double>& b)
+{
+	return norm(a.n1 - b.n1) + norm(a.n3 - b.n3);
+}
 
 bool distinct(const PrincipalStresses<double>& p)
 {
@@ -61,7 +64,8 @@ TEST(PrincipalStresses, sharedEquallyWhereTwoCoincide)
 	const PrincipalStresses<double> column = principal({ 0, -30e6, 0, 0 }); // σ1 = σ2 = 0: N1 is half x, half z
 	EXPECT_LT(norm(column.n1 - PlaneTensor { 0.5, 0, 0.5, 0 }), 1e-15);
 	EXPECT_LT(norm(column.n3 - PlaneTensor { 0, 1, 0, 0 }), 1e-15);
-	const PrincipalStresses<double> disc = principal({ -30e6, -30e6, 4e6, 0 }); // σ2 = σ3 in the plane, where the axes are arbitrary
+	// σ2 = σ3 in the plane, where the axes are arbitrary
+	const PrincipalStresses<double> disc = principal({ -30e6, -30e6, 4e6, 0 });
 	EXPECT_LT(norm(disc.n3 - PlaneTensor { 0.5, 0.5, 0, 0 }), 1e-15);
 	for (const double p : { -7e6, 0., 7e6 }) {
 		const PrincipalStresses<double> all = principal({ p, p, p, 0 });
@@ -70,7 +74,8 @@ TEST(PrincipalStresses, sharedEquallyWhereTwoCoincide)
 	}
 }
 
-TEST(PrincipalStresses, handOverIsSmoothInTheStress) // the eigentensors' change is proportional to the step, also across coincidences
+// the eigentensors' change is proportional to the step, also across coincidences
+TEST(PrincipalStresses, handOverIsSmoothInTheStress)
 {
 	const PlaneTensor starts[] = { { 0, -30e6, 1e6, 0 }, { -30e6, -31e6, 4e6, -1e6 }, { 10e6, 11e6, 9e6, 0.5e6 } };
 	const PlaneTensor ends[]   = { { 1e6, -30e6, 0, 0 }, { -31e6, -30e6, 4e6, 1e6 }, { 11e6, 9e6, 10e6, -0.5e6 } };
@@ -79,16 +84,20 @@ TEST(PrincipalStresses, handOverIsSmoothInTheStress) // the eigentensors' change
 			double largest = 0, largestBend = 0;
 			auto   before = principal(starts[path]), current = before;
 			for (int i = 0; i <= steps; ++i) {
-				const auto next = principal(starts[path] + (double(i) / steps) * (ends[path] - starts[path]));
+				const auto next
+				        = principal(starts[path] + (double(i) / steps) * (ends[path] - starts[path]));
 				largest         = std::max(largest, distance(next, current));
 				if (i > 1)
 					largestBend = std::max(
-					        largestBend, norm(next.n1 - 2. * current.n1 + before.n1) + norm(next.n3 - 2. * current.n3 + before.n3));
+					        largestBend,
+					        norm(next.n1 - 2. * current.n1 + before.n1)
+					                + norm(next.n3 - 2. * current.n3 + before.n3));
 				before  = current;
 				current = next;
 			}
-			EXPECT_LT(largest * steps, 10) << "path " << path;               // bounded slope: continuous
-			EXPECT_LT(largestBend * steps * steps, 1000) << "path " << path; // bounded curvature: slope continuous
+			EXPECT_LT(largest * steps, 10) << "path " << path; // bounded slope: continuous
+			// bounded curvature: slope continuous
+			EXPECT_LT(largestBend * steps * steps, 1000) << "path " << path;
 		}
 }
 

@@ -10,19 +10,23 @@ namespace {
 
 using namespace bond_samples;
 
-/// Particles of a chain, each bonded to the next three, slightly out of place; one thread sees what a sample of this size costs per bond.
+/// Particles of a chain, each bonded to the next three, slightly out of place;
+/// one thread sees what a sample of this size costs per bond.
 void allBonds(benchmark::State& state, BondConvention convention)
 {
 	const auto                             particles = static_cast<std::int32_t>(state.range(0));
 	std::mt19937_64                        engine(1);
 	std::uniform_real_distribution<double> unit(-1, 1);
-	const auto                             vector = [&] { return Vector(unit(engine), unit(engine), unit(engine)); };
+	const auto vector = [&] { return Vector(unit(engine), unit(engine), unit(engine)); };
 	BondSystem                             system;
 	for (std::int32_t i = 0; i < particles; i++)
 		for (std::int32_t j = i + 1; j < std::min(i + 4, particles); j++) {
 			const Vector        branch(2e-3 * (j - i), 0, 0);
-			const BondStiffness stiffness = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
-			system.add(i, j, join(stiffness, branch, Quaternion::Identity(), Quaternion::Identity()), { 1e15, 1 });
+			const BondStiffness stiffness
+			        = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
+			system.add(
+			        i, j, join(stiffness, branch, Quaternion::Identity(), Quaternion::Identity()),
+			        { 1e15, 1 });
 		}
 	system.assemble(std::size_t(particles));
 	for (std::int32_t i = 0; i < particles; i++) {

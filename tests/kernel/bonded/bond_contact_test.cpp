@@ -19,7 +19,8 @@ protected:
 	const BondElasticity   elasticity { 100e9, 0.25 };
 	const ContactStiffness stiffness = contactStiffness(elasticity, 2e-3);
 	ContactFriction        friction { 0.6, 0.4 };
-	ContactMotion          motion { Vector3d::UnitX(), 1.998e-3, 1e-3, 1e-3, Vector3d(0, 0.01 * 1.998 / 2, 0), Vector3d::Zero(), Vector3d::Zero() };
+	ContactMotion motion { Vector3d::UnitX(), 1.998e-3,        1e-3, 1e-3, Vector3d(0, 0.01 * 1.998 / 2, 0),
+		               Vector3d::Zero(),  Vector3d::Zero() };
 	const double           dt = 1e-6;
 	ContactMemory          memory;
 
@@ -35,7 +36,8 @@ TEST_F(SlidingContact, hasTheSpringsOfTheBondItReplaces)
 
 TEST_F(SlidingContact, sticksUntilStaticFrictionThenSlidesWithDynamic)
 {
-	const double normal = 314.159265; // π E R/2 · 2 µm; ESyS-Particle 2.3.5 gives 188.50 N at the limit and 125.66 N after it
+	const double normal = 314.159265; // π E R/2 · 2 µm;
+	                                  // ESyS-Particle 2.3.5 gives 188.50 N at the limit and 125.66 N after it
 	for (int i = 1; i < 300; i++) {   // the limit is 300 steps of slip
 		const double expected = stiffness.shear * 1e-8 * i;
 		EXPECT_NEAR(step().force.y(), expected * 2 / 1.998, 1e-9 * expected) << i;
@@ -99,16 +101,20 @@ TEST_F(SlidingContact, rollingDoesNotSlip)
 	EXPECT_NEAR(step().force.tail<2>().norm(), 0, 1e-15);
 }
 
-TEST_F(SlidingContact, growsGraduallyWhereAsked) // eq. 7 of the report: F_T = μ F_N (1 - (1 - |δ|/δ_max)^{3/2}), then dynamic friction
+// eq. 7 of the report: F_T = μ F_N (1 - (1 - |δ|/δ_max)^{3/2}), then dynamic friction
+TEST_F(SlidingContact, growsGraduallyWhereAsked)
 {
 	friction             = { 0.6, 0.4, true };
-	const double normal  = 314.159265, largest = 1.5 * 0.6 * normal / stiffness.shear; // π E R/2 · 2 µm; δ_max = 3 μ F_N/(2 k_s)
+	// π E R/2 · 2 µm; δ_max = 3 μ F_N/(2 k_s)
+	const double normal  = 314.159265, largest = 1.5 * 0.6 * normal / stiffness.shear;
 	const int    sliding = int(std::ceil(largest / 1e-8));                           // steps of 10 nm
 	for (int i = 1; i < sliding; i++) {
 		step();
-		EXPECT_NEAR(memory.force, 0.6 * normal * (1 - std::pow(1 - i * 1e-8 / largest, 1.5)), 1e-6 * normal) << i;
+		EXPECT_NEAR(memory.force, 0.6 * normal * (1 - std::pow(1 - i * 1e-8 / largest, 1.5)), 1e-6 * normal)
+		        << i;
 		if (i == 1) {
-			EXPECT_NEAR(memory.force, stiffness.shear * 1e-8, 2e-3 * memory.force); // starts as stiff as the linear law
+			// starts as stiff as the linear law
+			EXPECT_NEAR(memory.force, stiffness.shear * 1e-8, 2e-3 * memory.force);
 		}
 	}
 	EXPECT_FALSE(memory.sliding);
@@ -124,7 +130,8 @@ TEST_F(SlidingContact, growsGraduallyWhereAsked) // eq. 7 of the report: F_T = �
 	EXPECT_TRUE(memory.sliding);
 }
 
-/// Speed after over speed before a collision of two equal free spheres, head-on or past each other without friction, of a given damping ratio.
+/// Speed after over speed before a collision of two equal free spheres, head-on or past each other without friction,
+/// of a given damping ratio.
 double restitution(double ratio)
 {
 	const double           mass = 2e-5, dt = 1e-9; // reduced mass mass/2
@@ -134,7 +141,15 @@ double restitution(double ratio)
 	double                 distance = 2e-3 - 1e-15, opening = -1, energy = mass / 2 * 0.5, lost = 0;
 	for (bool touching = true; touching;) {
 		const ContactLoads l = contactLoads(
-		        stiffness, { 0, 0 }, { Vector3d::UnitX(), distance, 1e-3, 1e-3, { opening, 0, 0 }, Vector3d::Zero(), Vector3d::Zero() }, dt, memory, damping);
+		        stiffness, { 0, 0 },
+		        { Vector3d::UnitX(),
+		          distance,
+		          1e-3,
+		          1e-3,
+		          { opening, 0, 0 },
+		          Vector3d::Zero(),
+		          Vector3d::Zero() },
+		        dt, memory, damping);
 		touching = l.touching;
 		lost += l.damped;
 		opening -= 2 * l.force.x() / mass * dt;
@@ -144,7 +159,8 @@ double restitution(double ratio)
 	return opening;
 }
 
-TEST(ContactDamping, givesTheRestitutionOfALinearDashpot) // e = exp(-πζ/√(1-ζ²)) where the contact ends with the overlap's half period
+// e = exp(-πζ/√(1-ζ²)) where the contact ends with the overlap's half period
+TEST(ContactDamping, givesTheRestitutionOfALinearDashpot)
 {
 	for (const double ratio : { 0., 0.05, 0.2, 0.5 })
 		EXPECT_NEAR(restitution(ratio), std::exp(-M_PI * ratio / std::sqrt(1 - ratio * ratio)), 2e-3) << ratio;
@@ -164,19 +180,21 @@ TEST_F(SlidingContact, isDampedWhileItSticksOnly)
 
 class WorkOfAContact : public SlidingContact, public testing::WithParamInterface<std::pair<bool, ContactDamping>> { };
 
-TEST_P(WorkOfAContact, goesIntoSpringsFrictionAndDamping) // a random motion of unequal spheres; the sum misses only the trapezoidal rule's error
+// a random motion of unequal spheres; the sum misses only the trapezoidal rule's error
+TEST_P(WorkOfAContact, goesIntoSpringsFrictionAndDamping)
 {
 	friction.gradual = GetParam().first;
 	std::mt19937_64                        engine { 3 };
 	std::uniform_real_distribution<double> unit { -1, 1 };
-	const auto                             vector = [&] { return Vector3d(unit(engine), unit(engine), unit(engine)); };
+	const auto vector = [&] { return Vector3d(unit(engine), unit(engine), unit(engine)); };
 	double                                 error[2];
 	for (int refined : { 0, 1 }) {
 		engine.seed(3);
 		memory                    = ContactMemory();
 		const double   h          = refined ? 1e-8 : 2e-8;
 		const Vector3d amplitude1 = vector(), amplitude2 = vector(), amplitude3 = vector();
-		Vector3d       branch(3e-3 - 4e-6, 0, 0), oldForce = Vector3d::Zero(), oldMoment1 = Vector3d::Zero(), oldMoment2 = Vector3d::Zero();
+		Vector3d       branch(3e-3 - 4e-6, 0, 0), oldForce = Vector3d::Zero(), oldMoment1 = Vector3d::Zero(),
+		                                    oldMoment2 = Vector3d::Zero();
 		double         work = 0, lost = 0, stored = 0, start = -1;
 		motion.radius2 = 2e-3;
 		for (double t = 0; t < 1e-4; t += h) {
@@ -191,7 +209,8 @@ TEST_P(WorkOfAContact, goesIntoSpringsFrictionAndDamping) // a random motion of 
 			ASSERT_GT(l.energy, 0);
 			if (start >= 0) {
 				work -= 0.5 * h
-				        * (-(l.force + oldForce).dot(motion.relativeVelocity) + (l.moment1 + oldMoment1).dot(motion.angularVelocity1)
+				        * (-(l.force + oldForce).dot(motion.relativeVelocity)
+				           + (l.moment1 + oldMoment1).dot(motion.angularVelocity1)
 				           + (l.moment2 + oldMoment2).dot(motion.angularVelocity2));
 				lost += l.dissipated + l.damped;
 			} else
@@ -201,7 +220,8 @@ TEST_P(WorkOfAContact, goesIntoSpringsFrictionAndDamping) // a random motion of 
 			oldMoment1 = l.moment1;
 			oldMoment2 = l.moment2;
 			EXPECT_LT((l.moment1 + l.moment2 - branch.cross(l.force)).norm(), 1e-15 * (l.force.norm()));
-			if (!friction.gradual) { // the gradual law stores and gives back a little when the normal force changes
+			// the gradual law stores and gives back a little when the normal force changes
+			if (!friction.gradual) {
 				EXPECT_GE(l.dissipated, -1e-12 * stored);
 			}
 		}
@@ -223,7 +243,8 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(FollowContact, keepsTheLengthAndThePlane)
 {
-	const Vector3d from = Vector3d(1, 2, 3).normalized(), to = Vector3d(1.1, 1.9, 3.2).normalized(), force = from.cross(Vector3d::UnitX());
+	const Vector3d from = Vector3d(1, 2, 3).normalized(), to = Vector3d(1.1, 1.9, 3.2).normalized(),
+	               force  = from.cross(Vector3d::UnitX());
 	const Vector3d turned = followContact(force, from, to, 0.1);
 	EXPECT_NEAR(turned.norm(), force.norm(), 1e-15);
 	EXPECT_NEAR(turned.dot(to), 0, 1e-15);
@@ -254,7 +275,8 @@ TEST(ViscousDamper, slowsDownExponentiallyAndBooksItsEnergyExactly)
 	const ViscousDamper damper(viscosity, dt);
 	double              velocity = 1, lost = 0, pushed = 0;
 	for (int i = 0; i < 1000; i++) {
-		const double drag = damper.load(velocity, load, mass), next = velocity + dt * (load + drag) / mass, mean = 0.5 * (velocity + next);
+		const double drag = damper.load(velocity, load, mass), next = velocity + dt * (load + drag) / mass,
+		             mean = 0.5 * (velocity + next);
 		EXPECT_NEAR(drag, -viscosity * mass * mean, 1e-12);
 		lost += damper.loss(velocity, load, mass);
 		pushed += load * mean * dt;

@@ -26,7 +26,7 @@ protected:
 	static constexpr double radius = 1e-3, length = 2e-3;
 	const BondSection       section { radius };
 	const BondStiffness     stiffness = bondStiffness(cement, section, length);
-	const Bond              bond      = join(stiffness, { length, 0, 0 }, Quaternion::Identity(), Quaternion::Identity());
+	const Bond bond = join(stiffness, { length, 0, 0 }, Quaternion::Identity(), Quaternion::Identity());
 	Pose                    one, two { { length, 0, 0 }, Quaternion::Identity() };
 
 	Loads loads() const { return loadsOf(bond, two.position - one.position, one.orientation, two.orientation); }
@@ -40,7 +40,10 @@ protected:
 	const BondStiffness                    stiffness { 3e8, 1.2e8, 90, 70 };
 
 	Vector     vector() { return { unit(engine), unit(engine), unit(engine) }; }
-	Quaternion orientation() { return Quaternion(unit(engine), unit(engine), unit(engine), unit(engine)).normalized(); }
+	Quaternion orientation()
+	{
+		return Quaternion(unit(engine), unit(engine), unit(engine), unit(engine)).normalized();
+	}
 	void       disturb(Pose& pose, double amplitude)
 	{
 		pose.position += amplitude * 1e-3 * vector();
@@ -115,7 +118,8 @@ TEST_F(StraightBond, twistsWithGJOverLengthAtAnyAngle)
 	}
 }
 
-TEST_F(StraightBond, shearsWhenOneParticleTurns) // to first order Fs = -ks (d0/2) φ, M1 = -ks (d0/2)² φ + kb φ, M2 = -ks (d0/2)² φ - kb φ
+// to first order Fs = -ks (d0/2) φ, M1 = -ks (d0/2)² φ + kb φ, M2 = -ks (d0/2)² φ - kb φ
+TEST_F(StraightBond, shearsWhenOneParticleTurns)
 {
 	const double angle    = 1e-6;
 	two.orientation       = turn(angle, Vector::UnitZ());
@@ -157,7 +161,8 @@ TEST_F(RandomBond, loadsAreTheDerivativesOfTheEnergy)
 {
 	const double step = 1e-6; // of length in mm and of angle in rad
 	for (int trial = 0; trial < 50; trial++) {
-		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
+		Pose       a { 1e-3 * vector(), orientation() },
+		           b { a.position + 2e-3 * vector().normalized(), orientation() };
 		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 0.7);
 		disturb(b, 0.7);
@@ -189,7 +194,8 @@ TEST_F(RandomBond, loadsAreTheDerivativesOfTheEnergy)
 TEST_F(RandomBond, conservesAngularMomentum)
 {
 	for (int trial = 0; trial < 1000; trial++) {
-		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
+		Pose a { 1e-3 * vector(), orientation() },
+		        b { a.position + 2e-3 * vector().normalized(), orientation() };
 		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 1);
 		disturb(b, 1);
@@ -202,7 +208,8 @@ TEST_F(RandomBond, conservesAngularMomentum)
 TEST_F(RandomBond, isObjective)
 {
 	for (int trial = 0; trial < 200; trial++) {
-		Pose       a { 1e-3 * vector(), orientation() }, b { a.position + 2e-3 * vector().normalized(), orientation() };
+		Pose a { 1e-3 * vector(), orientation() },
+		        b { a.position + 2e-3 * vector().normalized(), orientation() };
 		const Bond bond = join(stiffness, b.position - a.position, a.orientation, b.orientation);
 		disturb(a, 0.5);
 		disturb(b, 0.5);
@@ -222,13 +229,15 @@ TEST_F(RandomBond, isObjective)
 	}
 }
 
-TEST_F(RandomBond, doesNoWorkOnClosedPaths) // both particles go round loops of ±0.2 lengths and radians; the midpoint rule is exact for periodic paths
+// both particles go round loops of ±0.2 lengths and radians; the midpoint rule is exact for periodic paths
+TEST_F(RandomBond, doesNoWorkOnClosedPaths)
 {
 	const int steps = 400;
 	for (int trial = 0; trial < 10; trial++) {
 		const Pose   a0 { Vector::Zero(), orientation() }, b0 { 2e-3 * vector().normalized(), orientation() };
 		const Bond   bond = join(stiffness, b0.position, a0.orientation, b0.orientation);
-		const Vector s1 = vector(), s2 = vector(), s3 = vector(), s4 = vector(), u1 = vector(), u2 = vector(), u3 = vector(), u4 = vector();
+		const Vector s1 = vector(), s2 = vector(), s3 = vector(), s4 = vector(), u1 = vector(), u2 = vector(),
+		             u3 = vector(), u4 = vector();
 		const auto   at = [&](double t) {
                         Pose a = a0, b = b0;
                         a.position += 2e-4 * (std::sin(t) * s1 + std::sin(2 * t) * s2);
@@ -237,7 +246,9 @@ TEST_F(RandomBond, doesNoWorkOnClosedPaths) // both particles go round loops of 
                         b.orientation = turn(0.2 * std::cos(t), u3) * turn(0.2 * std::sin(2 * t), u4) * b0.orientation;
                         return std::make_pair(a, b);
 		};
-		const auto   rate = [](const Quaternion& from, const Quaternion& to) { return Vector(2 * (to * from.conjugate()).vec()); };
+		const auto rate = [](const Quaternion& from, const Quaternion& to) {
+			return Vector(2 * (to * from.conjugate()).vec());
+		};
 		double       work = 0, gross = 0;
 		const double h = 2 * M_PI / steps;
 		for (int i = 0; i < steps; i++) {
@@ -245,8 +256,9 @@ TEST_F(RandomBond, doesNoWorkOnClosedPaths) // both particles go round loops of 
 			const auto [am, bm]   = at((i - 1e-3) * h);
 			const auto [ap, bp]   = at((i + 1e-3) * h);
 			const Loads l     = loads(bond, a, b);
-			const double    power = (l.force.dot((ap.position - am.position) - (bp.position - bm.position))
-                                              + l.moment1.dot(rate(am.orientation, ap.orientation)) + l.moment2.dot(rate(bm.orientation, bp.orientation)))
+			const double power = (l.force.dot((ap.position - am.position) - (bp.position - bm.position))
+			                      + l.moment1.dot(rate(am.orientation, ap.orientation))
+			                      + l.moment2.dot(rate(bm.orientation, bp.orientation)))
 			        / 2e-3;
 			work += power;
 			gross += std::abs(power);

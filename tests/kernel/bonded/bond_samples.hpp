@@ -19,17 +19,25 @@ struct Loads {
 };
 
 /// A bond between particles that touch: equal radii of half the branch unless given.
-inline Bond join(const BondStiffness& stiffness, const Vector& branch, const Quaternion& q1, const Quaternion& q2, double radius1 = 0)
+inline Bond
+join(const BondStiffness& stiffness, const Vector& branch, const Quaternion& q1, const Quaternion& q2,
+     double radius1 = 0)
 {
 	const double first = radius1 > 0 ? radius1 : branch.norm() / 2;
 	return makeBond(stiffness, first, branch.norm() - first, spaceVector(branch), rotation(q1), rotation(q2));
 }
 
 inline Loads
-loadsOf(const Bond& bond, const Vector& branch, const Quaternion& q1, const Quaternion& q2, BondConvention convention = BondConvention::Consistent)
+loadsOf(const Bond& bond, const Vector& branch, const Quaternion& q1, const Quaternion& q2,
+        BondConvention convention = BondConvention::Consistent)
 {
 	const BondLoads l = bondLoads(convention, bond, spaceVector(branch), rotation(q1), rotation(q2));
-	return { eigenVector(l.force), eigenVector(l.moment1), eigenVector(l.moment2), eigenVector(l.axis), l.section, l.energy };
+	return { eigenVector(l.force),
+		 eigenVector(l.moment1),
+		 eigenVector(l.moment2),
+		 eigenVector(l.axis),
+		 l.section,
+		 l.energy };
 }
 
 } // namespace bond_samples

@@ -23,12 +23,14 @@ TEST(StableStep, isExactForTwoParticles)
 {
 	const double        r = 1e-3, mass = 1e-5, inertia = 0.4 * mass * r * r;
 	const BondStiffness k = bondStiffness({ 100e9, 0.25 }, BondSection(r), 2 * r);
-	// equal spheres: shear against both rotations, ks (2/m + 2 (d0/2)²/I), is the highest of axial, torsion, bending and shear frequencies
+	// equal spheres: shear against both rotations, ks (2/m + 2 (d0/2)²/I), is the highest of axial, torsion,
+	// bending and shear frequencies
 	const double highest = k.shear * 2 * (1 / mass + r * r / inertia);
 	ASSERT_GT(highest, k.normal * 2 / mass);
 	ASSERT_GT(highest, k.bending * 2 / inertia);
 	EXPECT_NEAR(
-	        stableStep({ { mass, inertia }, { mass, inertia } }, { bondSpring(0, 1, k, 2 * r) }), 2 / std::sqrt(highest), 1e-12 * 2 / std::sqrt(highest));
+	        stableStep({ { mass, inertia }, { mass, inertia } }, { bondSpring(0, 1, k, 2 * r) }),
+	        2 / std::sqrt(highest), 1e-12 * 2 / std::sqrt(highest));
 }
 
 TEST(StableStep, isExactForASpringToAWall)
@@ -38,8 +40,9 @@ TEST(StableStep, isExactForASpringToAWall)
 }
 
 /// Stiffness of all bonds by differences of their loads: 6 unknowns a particle.
-Matrix
-assembledStiffness(const std::vector<Eigen::Vector3d>& centres, const std::vector<std::pair<int, int>>& pairs, const std::vector<Bond>& bonds, double size)
+Matrix assembledStiffness(
+        const std::vector<Eigen::Vector3d>& centres, const std::vector<std::pair<int, int>>& pairs,
+        const std::vector<Bond>& bonds, double size)
 {
 	const double step   = 1e-7;
 	const auto   n      = static_cast<Eigen::Index>(6 * centres.size());
@@ -49,17 +52,20 @@ assembledStiffness(const std::vector<Eigen::Vector3d>& centres, const std::vecto
 			for (int unknown = 0; unknown < 6; unknown++) {
 				Eigen::VectorXd loads[2];
 				for (int sign = 0; sign < 2; sign++) {
-					Vector x[2] = { centres[static_cast<std::size_t>(pairs[b].first)], centres[static_cast<std::size_t>(pairs[b].second)] };
+					Vector x[2] = { centres[static_cast<std::size_t>(pairs[b].first)],
+						        centres[static_cast<std::size_t>(pairs[b].second)] };
 					Quaternion   q[2]  = { Quaternion::Identity(), Quaternion::Identity() };
 					const double delta = sign ? step : -step;
 					if (unknown < 3) x[side][unknown] += delta * size;
 					else
-						q[side] = Quaternion(Eigen::AngleAxisd(delta, Vector::Unit(unknown - 3)));
+						q[side] = Quaternion(
+						        Eigen::AngleAxisd(delta, Vector::Unit(unknown - 3)));
 					const Loads l = loadsOf(bonds[b], x[1] - x[0], q[0], q[1]);
 					loads[sign].resize(12);
 					loads[sign] << l.force, l.moment1, -l.force, l.moment2;
 				}
-				const Eigen::VectorXd column = (loads[0] - loads[1]) / (2 * step * (unknown < 3 ? size : 1));
+				const Eigen::VectorXd column
+				        = (loads[0] - loads[1]) / (2 * step * (unknown < 3 ? size : 1));
 				const int             place  = 6 * (side ? pairs[b].second : pairs[b].first) + unknown;
 				result.col(place).segment<6>(6 * pairs[b].first) += column.head<6>();
 				result.col(place).segment<6>(6 * pairs[b].second) += column.tail<6>();
@@ -86,9 +92,11 @@ TEST(StableStep, boundsWholePackingsClosely)
 		}
 		for (int i = 0; i < 12; i++)
 			for (int j = i + 1; j < 12; j++) {
-				const Eigen::Vector3d branch = centres[static_cast<std::size_t>(j)] - centres[static_cast<std::size_t>(i)];
+				const Eigen::Vector3d branch
+				        = centres[static_cast<std::size_t>(j)] - centres[static_cast<std::size_t>(i)];
 				if (branch.norm() > 3e-3) continue;
-				const BondStiffness k = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
+				const BondStiffness k
+				        = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
 				pairs.emplace_back(i, j);
 				bonds.push_back(join(k, branch, Quaternion::Identity(), Quaternion::Identity()));
 				springs.push_back(bondSpring(i, j, k, branch.norm()));
@@ -96,11 +104,14 @@ TEST(StableStep, boundsWholePackingsClosely)
 		Matrix          stiffness = assembledStiffness(centres, pairs, bonds, 1e-3);
 		Eigen::VectorXd root(stiffness.rows());
 		for (std::size_t i = 0; i < masses.size(); i++)
-			root.segment<6>(static_cast<Eigen::Index>(6 * i)) << Vector::Constant(std::sqrt(masses[i].mass)),
+			root.segment<6>(static_cast<Eigen::Index>(6 * i))
+			        << Vector::Constant(std::sqrt(masses[i].mass)),
 			        Vector::Constant(std::sqrt(masses[i].inertia));
 		EXPECT_LT((stiffness - stiffness.transpose()).norm(), 1e-6 * stiffness.norm());
 		stiffness            = root.cwiseInverse().asDiagonal() * stiffness * root.cwiseInverse().asDiagonal();
-		const double highest = Eigen::SelfAdjointEigenSolver<Matrix>(0.5 * (stiffness + stiffness.transpose())).eigenvalues().maxCoeff();
+		const double highest = Eigen::SelfAdjointEigenSolver<Matrix>(0.5 * (stiffness + stiffness.transpose()))
+		                               .eigenvalues()
+		                               .maxCoeff();
 		const double exact = 2 / std::sqrt(highest), bound = stableStep(masses, springs);
 		EXPECT_LE(bound, exact * (1 + 1e-6));
 		EXPECT_GE(bound, 0.8 * exact);

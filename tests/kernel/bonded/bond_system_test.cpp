@@ -30,16 +30,22 @@ protected:
 
 	Vector vector() { return { unit(engine), unit(engine), unit(engine) }; }
 
-	/// Bonds between all pairs of some particles, made in random orientations; then everything is moved by `amplitude` sizes and radians.
+	/// Bonds between all pairs of some particles, made in random orientations;
+	/// then everything is moved by `amplitude` sizes and radians.
 	void make(int count, double amplitude, double cohesion)
 	{
 		for (int i = 0; i < count; i++)
-			particles.push_back({ 5 * size * vector(), Quaternion(unit(engine), unit(engine), unit(engine), unit(engine)).normalized() });
+			particles.push_back(
+			        { 5 * size * vector(),
+			          Quaternion(unit(engine), unit(engine), unit(engine), unit(engine)).normalized() });
 		for (int i = 0; i < count; i++)
 			for (int j = i + 1; j < count; j++) {
 				const Vector        branch    = particles[j].x - particles[i].x;
-				const BondStiffness stiffness = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
-				bonds.push_back(join(stiffness, branch, particles[i].q, particles[j].q, (0.3 + 0.2 * unit(engine)) * branch.norm()));
+				const BondStiffness stiffness
+				        = bondStiffness({ 100e9, 0.25 }, BondSection(branch.norm() / 2), branch.norm());
+				bonds.push_back(
+				        join(stiffness, branch, particles[i].q, particles[j].q,
+				             (0.3 + 0.2 * unit(engine)) * branch.norm()));
 				pairs.emplace_back(i, j);
 				system.add(i, j, bonds.back(), { cohesion, 1 });
 			}
@@ -47,14 +53,15 @@ protected:
 		for (int i = 0; i < count; i++) {
 			Particle& p = particles[std::size_t(i)];
 			p.x += amplitude * size * vector();
-			p.q                  = Quaternion(Eigen::AngleAxisd(amplitude * unit(engine), vector().normalized())) * p.q;
+			p.q = Quaternion(Eigen::AngleAxisd(amplitude * unit(engine), vector().normalized())) * p.q;
 			const double pose[8] = { p.x.x(), p.x.y(), p.x.z(), 0, p.q.w(), p.q.x(), p.q.y(), p.q.z() };
 			std::copy_n(pose, 8, system.pose.begin() + 8 * i);
 		}
 	}
 	Loads alone(std::size_t bond) const
 	{
-		const Particle &a = particles[std::size_t(pairs[bond].first)], &b = particles[std::size_t(pairs[bond].second)];
+		const Particle &a = particles[std::size_t(pairs[bond].first)],
+		               &b = particles[std::size_t(pairs[bond].second)];
 		return loadsOf(bonds[bond], b.x - a.x, a.q, b.q, GetParam());
 	}
 };
@@ -83,12 +90,14 @@ TEST_P(RandomSample, addsUpTheLoadsOfItsBonds)
 			EXPECT_NEAR(system.row(b).normalStress, stress.normal, 1e-9 * std::abs(stress.normal) + 0.1);
 			EXPECT_NEAR(system.row(b).shearStress, stress.shear, 1e-9 * stress.shear + 0.1);
 		}
-		const double round = 1e-11 * scale + 22 * 2e9 * 1e-18; // 22 bonds of up to 2e9 N/m; positions are rounded to 1e-18 m
+		// 22 bonds of up to 2e9 N/m; positions are rounded to 1e-18 m
+		const double round = 1e-11 * scale + 22 * 2e9 * 1e-18;
 		EXPECT_NEAR(energy, sum, 1e-8 * sum);
 		for (std::size_t i = 0; i < particles.size(); i++)
 			for (int axis = 0; axis < 3; axis++) {
 				EXPECT_NEAR(system.load[6 * i + std::size_t(axis)], force[i][axis], round);
-				EXPECT_NEAR(system.load[6 * i + 3 + std::size_t(axis)], moment[i][axis], round * 10 * size);
+				EXPECT_NEAR(
+				        system.load[6 * i + 3 + std::size_t(axis)], moment[i][axis], round * 10 * size);
 			}
 	}
 }
@@ -99,7 +108,9 @@ TEST_P(RandomSample, namesOverloadedBondsInOrder)
 	std::vector<std::int32_t> overloaded, expected;
 	system.step(GetParam(), false, overloaded);
 	for (std::size_t b = 0; b < bonds.size(); b++)
-		if (bondFailure({ 20e6, 1 }, bondStress(BondSection(bonds[b].length / 2), alone(b).section)) != BondFailure::None) expected.push_back(std::int32_t(b));
+		if (bondFailure({ 20e6, 1 }, bondStress(BondSection(bonds[b].length / 2), alone(b).section))
+		    != BondFailure::None)
+			expected.push_back(std::int32_t(b));
 	EXPECT_GT(expected.size(), 10u);
 	EXPECT_LT(expected.size(), bonds.size() - 10);
 	EXPECT_EQ(overloaded, expected);
@@ -134,9 +145,9 @@ TEST_P(RandomSample, doesNotDependOnTheNumberOfThreads)
 	omp_set_num_threads(threads);
 }
 
-INSTANTIATE_TEST_SUITE_P(Conventions, RandomSample, testing::Values(BondConvention::Consistent, BondConvention::Esys), [](const auto& i) {
-	return i.param == BondConvention::Esys ? "Esys" : "Consistent";
-});
+INSTANTIATE_TEST_SUITE_P(
+        Conventions, RandomSample, testing::Values(BondConvention::Consistent, BondConvention::Esys),
+        [](const auto& i) { return i.param == BondConvention::Esys ? "Esys" : "Consistent"; });
 
 TEST(BondSystem, refusesBondsToParticlesThatDoNotExist)
 {

@@ -24,7 +24,8 @@ inline std::vector<std::map<std::string, double>> referenceTable(const std::stri
 		std::istringstream cells(line);
 		auto&              row = rows.emplace_back();
 		for (const auto& column : header) {
-			if (!std::getline(cells, cell, ',')) throw std::runtime_error(path + ": a row is too short: " + line);
+			if (!std::getline(cells, cell, ','))
+				throw std::runtime_error(path + ": a row is too short: " + line);
 			row[column] = std::stod(cell);
 		}
 	}

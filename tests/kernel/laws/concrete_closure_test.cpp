@@ -23,15 +23,18 @@ TEST(CrackClosure, neverRaisesTheStoredEnergy)
                         return doubleDot(degradedStress(concrete.lambda, concrete.twoShear, effect, damage.loss, e), e);
 		};
 		EXPECT_LE(energy(now, kept * strain), energy(before, strain) * (1 + 1e-12));
-		if (energy(now, strain) <= energy(before, strain)) EXPECT_EQ(kept, 1) << "an energy that falls is left to fall: that dissipates";
+		if (energy(now, strain) <= energy(before, strain))
+			EXPECT_EQ(kept, 1) << "an energy that falls is left to fall: that dissipates";
 		else
 			EXPECT_NEAR(energy(now, kept * strain), energy(before, strain), 1e-12 * energy(before, strain));
 	}
 }
 
-TEST(CrackClosure, cyclesCreateNoEnergy) // a stiffness that comes back at fixed strain would: then about a third of these cycles yields work
+// a stiffness that comes back at fixed strain would: then about a third of these cycles yields work
+TEST(CrackClosure, cyclesCreateNoEnergy)
 {
-	const ConcreteUpdate update = concreteUpdate(ConcreteEffects::Damage); // no flow that could hide what closing creates
+	// no flow that could hide what closing creates
+	const ConcreteUpdate update = concreteUpdate(ConcreteEffects::Damage);
 	Random               random(13);
 	int                  dissipating = 0;
 	for (int cycle = 0; cycle < 200; ++cycle) {
@@ -45,13 +48,15 @@ TEST(CrackClosure, cyclesCreateNoEnergy) // a stiffness that comes back at fixed
 			for (int i = 1; i <= steps; ++i) {
 				const ConcreteState old = state;
 				update(concrete, 80e3, from + (double(i) / steps) * (to - from), 1e-6, state);
-				const double increment = 0.5 * doubleDot(old.stress + state.stress, state.strain - old.strain);
+				const double increment
+				        = 0.5 * doubleDot(old.stress + state.stress, state.strain - old.strain);
 				work += increment;
 				through += std::abs(increment);
 			}
 			from = to;
 		}
-		EXPECT_GE(work, -1e-3 * through) << "cycle " << cycle; // the trapezoidal rule over the stress drop of opening
+		// the trapezoidal rule over the stress drop of opening
+		EXPECT_GE(work, -1e-3 * through) << "cycle " << cycle;
 		dissipating += work > 1e-2 * through;
 	}
 	EXPECT_GT(dissipating, 50) << "cracks have opened and closed";

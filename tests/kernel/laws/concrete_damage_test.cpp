@@ -21,7 +21,8 @@ PreparedConcrete with(double ConcreteParameters::* parameter, double value)
 
 TEST(ConcreteDamage, parameterFollowsTheNormOfTheTensor) // η_0 = Ω_D²/(1 + Ω_D²), up to the residual of 1e-6
 {
-	const auto one = measureDamage(concrete, PlaneTensor { 0.6, 0, 0, 0.4 * std::sqrt(2.) }); // Ω:Ω = 0.36 + 2·0.32 = 1
+	// Ω:Ω = 0.36 + 2·0.32 = 1
+	const auto one = measureDamage(concrete, PlaneTensor { 0.6, 0, 0, 0.4 * std::sqrt(2.) });
 	EXPECT_NEAR(one.integrity, 0.5, 1e-6);
 	EXPECT_NEAR(norm(one.loss), 0.5, 1e-6);
 	EXPECT_NEAR(measureDamage(concrete, PlaneTensor { 3, 0, 0, 0 }).integrity, 0.1, 1e-6);
@@ -49,12 +50,15 @@ TEST(ConcreteDamage, leavesTheResidualWhenComplete)
 {
 	for (const double n : { 2., 0.7, 9. })
 		for (const double size : { 1e6, 1e100 }) { // η_0 from 1 − 1e-12 up to powers that overflow
-			const auto d = measureDamage(with(&ConcreteParameters::damageExponent, n), PlaneTensor { size, 0, 0, 0 });
+			const auto d = measureDamage(
+			        with(&ConcreteParameters::damageExponent, n), PlaneTensor { size, 0, 0, 0 });
 			EXPECT_NEAR(d.integrity, 1e-6, 1e-4) << n;
 			EXPECT_GE(d.integrity, 1e-6);
 			EXPECT_LE(d.loss.xx, 1 - 1e-6);
 		}
-	EXPECT_NEAR(measureDamage(with(&ConcreteParameters::residual, 1e-3), PlaneTensor { 1e9, 0, 0, 0 }).integrity, 1e-3, 1e-12);
+	EXPECT_NEAR(
+	        measureDamage(with(&ConcreteParameters::residual, 1e-3), PlaneTensor { 1e9, 0, 0, 0 }).integrity, 1e-3,
+	        1e-12);
 }
 
 TEST(ConcreteDamage, growthFollowsEquation8)
@@ -62,9 +66,11 @@ TEST(ConcreteDamage, growthFollowsEquation8)
 	const PlaneTensor direction { 1.66, 0, 0.34, 0.1 };
 	const PlaneTensor open = damageGrowth(concrete, 80e3, direction, 1., 400.); // ½ M_c · 400/80e3
 	EXPECT_LT(norm(open - 0.0025 * direction), 1e-16);
-	EXPECT_LT(norm(damageGrowth(concrete, 80e3, direction, 0., 400.) - 0.5 * open), 1e-16); // ξ_c0 = 0.5 in a closed crack
+	// ξ_c0 = 0.5 in a closed crack
+	EXPECT_LT(norm(damageGrowth(concrete, 80e3, direction, 0., 400.) - 0.5 * open), 1e-16);
 	EXPECT_LT(norm(damageGrowth(concrete, 40e3, direction, 1., 400.) - 2. * open), 1e-16);
-	for (const double drawn : { 0., -3e3, double(NAN) }) // a drawn fracture energy that is no energy: very brittle, not NaN
+	// a drawn fracture energy that is no energy: very brittle, not NaN
+	for (const double drawn : { 0., -3e3, double(NAN) })
 		EXPECT_NEAR(damageGrowth(concrete, drawn, direction, 1., 400.).xx, 0.5 * 1.66 * 400 / 0.08, 1e-6);
 }
 
@@ -72,10 +78,12 @@ TEST(ConcreteDamage, degradedStressIsTheTensorFormula) // λ Δ (Δ:ε) + 2μ Δ
 {
 	Random random(8);
 	for (int i = 0; i < 300; ++i) {
-		const PlaneTensor     loss = measureDamage(concrete, random.damage(4)).loss, strain = random.tensor(1e-3);
+		const PlaneTensor loss = measureDamage(concrete, random.damage(4)).loss, strain = random.tensor(1e-3);
 		const double          effect = random.number(0, 1);
-		const Eigen::Matrix3d delta = Eigen::Matrix3d::Identity() - effect * matrixOf(loss), e = matrixOf(strain);
-		const Eigen::Matrix3d stress = lambda * delta * (delta.array() * e.array()).sum() + twoShear * delta * e * delta;
+		const Eigen::Matrix3d delta = Eigen::Matrix3d::Identity() - effect * matrixOf(loss),
+		                      e = matrixOf(strain);
+		const Eigen::Matrix3d stress
+		        = lambda * delta * (delta.array() * e.array()).sum() + twoShear * delta * e * delta;
 		EXPECT_LT((matrixOf(degradedStress(lambda, twoShear, effect, loss, strain)) - stress).norm(), 1e-6);
 	}
 }
@@ -84,8 +92,10 @@ TEST(ConcreteDamage, degradedElasticityIsSymmetricAndPositive)
 {
 	Random random(9);
 	for (int i = 0; i < 300; ++i) {
-		const PlaneTensor loss = measureDamage(concrete, random.damage(1e3)).loss, a = random.tensor(1e-3), b = random.tensor(1e-3);
-		const PlaneTensor ca = degradedStress(lambda, twoShear, 1., loss, a), cb = degradedStress(lambda, twoShear, 1., loss, b);
+		const PlaneTensor loss = measureDamage(concrete, random.damage(1e3)).loss, a = random.tensor(1e-3),
+		                  b  = random.tensor(1e-3);
+		const PlaneTensor ca = degradedStress(lambda, twoShear, 1., loss, a),
+		                  cb = degradedStress(lambda, twoShear, 1., loss, b);
 		EXPECT_NEAR(doubleDot(ca, b), doubleDot(cb, a), 1e-10);
 		EXPECT_GE(doubleDot(ca, a), -1e-12);
 	}
@@ -97,13 +107,19 @@ TEST(ConcreteDamage, oneCrackLosesItsNormalAndShearStiffness)
 	const PlaneTensor normal = degradedStress(lambda, twoShear, 1., loss, PlaneTensor { 0, 1e-3, 0, 0 });
 	EXPECT_NEAR(normal.yy, (lambda + twoShear) * 0.04e-3, 1e-6); // (1 − η)²
 	EXPECT_NEAR(normal.xx, lambda * 0.2e-3, 1e-6);
-	EXPECT_NEAR(degradedStress(lambda, twoShear, 1., loss, PlaneTensor { 0, 0, 0, 1e-3 }).xy, twoShear * 0.2e-3, 1e-6);
-	EXPECT_NEAR(degradedStress(lambda, twoShear, 1., loss, PlaneTensor { 1e-3, 0, 0, 0 }).xx, (lambda + twoShear) * 1e-3, 1e-6); // along: intact
+	EXPECT_NEAR(
+	        degradedStress(lambda, twoShear, 1., loss, PlaneTensor { 0, 0, 0, 1e-3 }).xy, twoShear * 0.2e-3, 1e-6);
+	// along: intact
+	EXPECT_NEAR(
+	        degradedStress(lambda, twoShear, 1., loss, PlaneTensor { 1e-3, 0, 0, 0 }).xx,
+	        (lambda + twoShear) * 1e-3, 1e-6);
 }
 
-double normalStress(const PreparedConcrete& material, const DamageMeasure<double>& damage, const PlaneTensor& strain, double open)
+double normalStress(
+        const PreparedConcrete& material, const DamageMeasure<double>& damage, const PlaneTensor& strain, double open)
 {
-	const PlaneTensor stress = degradedStress(lambda, twoShear, stiffnessEffect(material, open), damage.loss, strain);
+	const PlaneTensor stress
+	        = degradedStress(lambda, twoShear, stiffnessEffect(material, open), damage.loss, strain);
 	return doubleDot(damage.loss, stress) / norm(damage.loss);
 }
 
@@ -113,7 +129,11 @@ TEST(ConcreteCrack, opensInTensionAndClosesInCompression)
 	EXPECT_EQ(crackOpenness(concrete, damage, PlaneTensor { 0, 1e-4, 0, 0 }), 1);
 	EXPECT_EQ(crackOpenness(concrete, damage, PlaneTensor { 0, 0, 0, 0 }), 1);
 	EXPECT_EQ(crackOpenness(concrete, damage, PlaneTensor { 0, -1e-4, 0, 0 }), 0);
-	EXPECT_EQ(crackOpenness(concrete, measureDamage(concrete, PlaneTensor { 0, 0, 0, 0 }), PlaneTensor { 0, -1e-4, 0, 0 }), 1) << "no crack, none closed";
+	EXPECT_EQ(
+	        crackOpenness(
+	                concrete, measureDamage(concrete, PlaneTensor { 0, 0, 0, 0 }), PlaneTensor { 0, -1e-4, 0, 0 }),
+	        1)
+	        << "no crack, none closed";
 	EXPECT_DOUBLE_EQ(stiffnessEffect(concrete, 1.), 1);
 	EXPECT_DOUBLE_EQ(stiffnessEffect(concrete, 0.), 0.1); // ξ_c1
 }
@@ -126,7 +146,8 @@ TEST(ConcreteCrack, agreesWithItsOwnNormalStressWhereThatHasOneAnswer)
 	for (int i = 0; i < 2000; ++i) {
 		const auto        damage    = measureDamage(sharp, random.damage(4));
 		const PlaneTensor strain    = random.tensor(1e-3);
-		const bool        staysOpen = normalStress(sharp, damage, strain, 1) >= 0, staysClosed = normalStress(sharp, damage, strain, 0) < 0;
+		const bool staysOpen = normalStress(sharp, damage, strain, 1) >= 0,
+		           staysClosed = normalStress(sharp, damage, strain, 0) < 0;
 		if (staysOpen == staysClosed) continue; // both or neither
 		++compared;
 		EXPECT_EQ(crackOpenness(sharp, damage, strain), staysOpen ? 1 : 0);
@@ -138,13 +159,15 @@ TEST(ConcreteCrack, closesOverTheBand)
 {
 	const PreparedConcrete banded = with(&ConcreteParameters::closureBand, 10e6);
 	const auto             damage = measureDamage(banded, PlaneTensor { 0, 2, 0, 0 });
-	const double           full   = 10e6 / (std::pow(1 - 0.1 * norm(damage.loss), 2) * (lambda + twoShear)); // strain at σ_Ω = −10 MPa
+	// strain at σ_Ω = −10 MPa
+	const double           full   = 10e6 / (std::pow(1 - 0.1 * norm(damage.loss), 2) * (lambda + twoShear));
 	EXPECT_NEAR(crackOpenness(banded, damage, PlaneTensor { 0, -0.25 * full, 0, 0 }), 0.75, 1e-12);
 	EXPECT_NEAR(crackOpenness(banded, damage, PlaneTensor { 0, -0.75 * full, 0, 0 }), 0.25, 1e-12);
 	EXPECT_EQ(crackOpenness(banded, damage, PlaneTensor { 0, -1.01 * full, 0, 0 }), 0);
 }
 
-TEST(ConcreteCrack, bandKeepsTheStressContinuous) // a sheared crack that closes: without the band its shear stress jumps
+// a sheared crack that closes: without the band its shear stress jumps
+TEST(ConcreteCrack, bandKeepsTheStressContinuous)
 {
 	const auto largestJump = [&](double band) {
 		const PreparedConcrete material = with(&ConcreteParameters::closureBand, band);
@@ -153,8 +176,9 @@ TEST(ConcreteCrack, bandKeepsTheStressContinuous) // a sheared crack that closes
 		double                 jump = 0;
 		for (int i = 0; i <= 4000; ++i) {
 			const PlaneTensor strain { 0, 2e-4 - 1e-7 * i, 0, 1e-3 };
-			const PlaneTensor stress
-			        = degradedStress(lambda, twoShear, stiffnessEffect(material, crackOpenness(material, damage, strain)), damage.loss, strain);
+			const PlaneTensor stress = degradedStress(
+			        lambda, twoShear, stiffnessEffect(material, crackOpenness(material, damage, strain)),
+			        damage.loss, strain);
 			if (i > 0) jump = std::max(jump, norm(stress - last));
 			last = stress;
 		}
@@ -172,7 +196,10 @@ TEST(LocalisedDamage, isReachedAtTheSameDamageWithAnyResidualAndExponent)
 			p.residual       = residual;
 			p.damageExponent = exponent;
 			const PreparedConcrete other(p);
-			EXPECT_NEAR(other.localisedIntegrity, measureDamage(other, PlaneTensor { 0.4, 0.3, 0, 0 }).integrity, 1e-15); // Ω_D = 0.5
+			// Ω_D = 0.5
+			EXPECT_NEAR(
+			        other.localisedIntegrity,
+			        measureDamage(other, PlaneTensor { 0.4, 0.3, 0, 0 }).integrity, 1e-15);
 		}
 }
 

@@ -37,9 +37,12 @@ TEST(ConcreteFlow, tensorsHaveTheSameSquare) // Zubelewicz (2018), after eq. 8: 
 TEST(ConcreteFlow, equivalentStressOfSimpleStates)
 {
 	const double s = 10e6, q = 0.66;
-	const auto   eq = [&](const PlaneTensor& stress) { return equivalentStress(flowTensor(principalStresses(stress, tolerance), q), stress); };
-	EXPECT_NEAR(eq({ 0, s, 0, 0 }), 0.5 * (1 + q) * s, 1e-6);  // tension
-	EXPECT_NEAR(eq({ 0, -s, 0, 0 }), 0.5 * (1 - q) * s, 1e-6); // compression: 1 : (1+q)/(1−q) is the ratio of strengths
+	const auto eq = [&](const PlaneTensor& stress) {
+		return equivalentStress(flowTensor(principalStresses(stress, tolerance), q), stress);
+	};
+	EXPECT_NEAR(eq({ 0, s, 0, 0 }), 0.5 * (1 + q) * s, 1e-6); // tension
+	// compression: 1 : (1+q)/(1−q) is the ratio of strengths
+	EXPECT_NEAR(eq({ 0, -s, 0, 0 }), 0.5 * (1 - q) * s, 1e-6);
 	EXPECT_NEAR(eq({ 0, 0, 0, s }), s, 1e-6);                  // shear: ½[(1+q) s + (1−q) s]
 	EXPECT_NEAR(eq({ s, s, s, 0 }), q * s, 1e-6);              // equal tension
 	EXPECT_NEAR(eq({ -s, -s, -s, 0 }), -q * s, 1e-6);          // pressure: no flow
@@ -58,8 +61,9 @@ TEST(ConcreteFlow, rateFactor)
 	EXPECT_NEAR(rateFactor<true>(concrete, 1e3), 6.7 * std::pow(1e3, 0.96), 1e-9);
 	EXPECT_DOUBLE_EQ(rateFactor<false>(concrete, 1e3), 6.7e3);
 	EXPECT_EQ(rateFactor<true>(concrete, 0.), 0);
-	EXPECT_DOUBLE_EQ(strainRateMeasure(PlaneTensor { 0, 0, 0, 5 }), 5); // √(½·2·5²): half the engineering shear rate
-	ConcreteParameters minutes;                                         // the same law with another time scale: ė_0^(1−ω) enters
+	// √(½·2·5²): half the engineering shear rate
+	EXPECT_DOUBLE_EQ(strainRateMeasure(PlaneTensor { 0, 0, 0, 5 }), 5);
+	ConcreteParameters minutes; // the same law with another time scale: ė_0^(1−ω) enters
 	minutes.referenceRate = 1. / 60;
 	EXPECT_NEAR(rateFactor<true>(PreparedConcrete(minutes), 1.), 6.7 / 60 * std::pow(60, 0.96), 1e-12);
 }
@@ -70,7 +74,8 @@ double referenceRoot(double n, double trial, double relaxation, double strength)
 	const auto f = [&](double y) { return y - 1 + relaxation / trial * std::pow(y * trial / strength, n); };
 	if (f(1) == 0) return trial;
 	std::uintmax_t iterations = 500;
-	const auto     bracket    = boost::math::tools::toms748_solve(f, 0., 1., boost::math::tools::eps_tolerance<double>(52), iterations);
+	const auto bracket = boost::math::tools::toms748_solve(
+	        f, 0., 1., boost::math::tools::eps_tolerance<double>(52), iterations);
 	return trial * 0.5 * (bracket.first + bracket.second);
 }
 
@@ -79,7 +84,8 @@ TEST(ConcreteFlowSolve, agreesWithRootFinder)
 	Random random(6);
 	for (const double n : { 0.5, 1., 0.2, 0.35, 0.8, 1.7, 3., 8. })
 		for (int i = 0; i < 300; ++i) {
-			const double strength = random.logarithmic(1e3, 1e9), trial = random.logarithmic(1, 1e10), relaxation = random.logarithmic(1e-3, 1e13);
+			const double strength = random.logarithmic(1e3, 1e9), trial = random.logarithmic(1, 1e10),
+			             relaxation = random.logarithmic(1e-3, 1e13);
 			const auto   solution  = solveFlow(Power(n), trial, relaxation, strength);
 			const double reference = referenceRoot(n, trial, relaxation, strength);
 			EXPECT_NEAR(solution.equivalent, reference, 1e-11 * reference + 1e-15 * trial)

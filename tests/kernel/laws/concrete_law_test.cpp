@@ -15,7 +15,9 @@ using namespace yade::ddem::ConcreteEffects;
 const PreparedConcrete concrete;
 constexpr double       fractureEnergy = 80e3;
 
-void advance(ConcreteState& state, const PlaneTensor& strain, double dt, unsigned effects = All, const PreparedConcrete& material = concrete)
+void advance(
+        ConcreteState& state, const PlaneTensor& strain, double dt, unsigned effects = All,
+        const PreparedConcrete& material = concrete)
 {
 	concreteUpdate(effects)(material, fractureEnergy, strain, dt, state);
 }
@@ -30,7 +32,8 @@ ConcreteState follow(const RandomPath& path, int steps, double duration, unsigne
 
 double distance(const ConcreteState& a, const ConcreteState& b)
 {
-	return norm(a.stress - b.stress) / 1e8 + norm(a.plasticStrain - b.plasticStrain) / 1e-3 + norm(a.damage - b.damage);
+	return norm(a.stress - b.stress) / 1e8 + norm(a.plasticStrain - b.plasticStrain) / 1e-3
+	        + norm(a.damage - b.damage);
 }
 
 TEST(ConcreteStep, followsEquations6To8) // a step so small that the implicit solve does not matter
@@ -40,15 +43,18 @@ TEST(ConcreteStep, followsEquations6To8) // a step so small that the implicit so
 	state.stress         = elasticStress(concrete.lambda, concrete.twoShear, state.strain);
 	const double      dt = 1e-9, rate = 2;
 	const PlaneTensor strain = state.strain + PlaneTensor { 0, rate * dt, 0, 0 };
-	const double      sigma1 = (concrete.lambda + concrete.twoShear) * strain.yy, sigma3 = concrete.lambda * strain.yy;
+	const double sigma1 = (concrete.lambda + concrete.twoShear) * strain.yy, sigma3 = concrete.lambda * strain.yy;
 	const double      q = 0.66, equivalent = 0.5 * ((1 + q) * sigma1 - (1 - q) * sigma3);
-	const double      flowRate = 6.7 * std::pow(std::sqrt(0.5 * rate * rate), 0.96) * std::sqrt(equivalent / 140e6); // eq. 7
+	// eq. 7
+	const double      flowRate = 6.7 * std::pow(std::sqrt(0.5 * rate * rate), 0.96) * std::sqrt(equivalent / 140e6);
 	advance(state, strain, dt, Flow | Rate | Damage);
 	// N1 = yy; σ2 = σ3, so that N3 is half xx and half zz
-	const PlaneTensor plastic { -0.5 * 0.5 * (1 - q) * flowRate * dt, 0.5 * (1 + q) * flowRate * dt, -0.5 * 0.5 * (1 - q) * flowRate * dt, 0 };
+	const PlaneTensor plastic { -0.5 * 0.5 * (1 - q) * flowRate * dt, 0.5 * (1 + q) * flowRate * dt,
+		                    -0.5 * 0.5 * (1 - q) * flowRate * dt, 0 };
 	const PlaneTensor damage { 0.5 * 0.5 * (1 - q), 0.5 * (1 + q), 0.5 * 0.5 * (1 - q), 0 };
 	EXPECT_LT(norm(state.plasticStrain - plastic), 1e-4 * norm(plastic));
-	EXPECT_LT(norm(state.damage - (equivalent * flowRate * dt / fractureEnergy) * damage), 1e-4 * norm(state.damage));
+	EXPECT_LT(
+	        norm(state.damage - (equivalent * flowRate * dt / fractureEnergy) * damage), 1e-4 * norm(state.damage));
 }
 
 TEST(ConcreteStep, doesNotDependOnTheAxes)
@@ -79,7 +85,8 @@ TEST(ConcreteStep, isFirstOrderInTheStrainIncrement)
 	for (int i = 0; i < 10; ++i) {
 		const RandomPath    path(random, 1e-3, false);
 		const ConcreteState fine = follow(path, 64000, 1e-3);
-		ratios += std::log2(distance(follow(path, 1000, 1e-3), fine) / distance(follow(path, 2000, 1e-3), fine));
+		ratios += std::log2(
+		        distance(follow(path, 1000, 1e-3), fine) / distance(follow(path, 2000, 1e-3), fine));
 		++count;
 	}
 	EXPECT_NEAR(ratios / count, 1, 0.2);
@@ -139,7 +146,8 @@ TEST(ConcreteStep, atRestNothingHappens)
 		const ConcreteState moved = follow(RandomPath(random, 3e-3, i % 2 == 0), 3000, 1e-3);
 		ConcreteState       state = moved;
 		for (int k = 0; k < 50; ++k)
-			advance(state, state.strain, 1e-6); // the crack settles on the openness of its new damage and slip
+			// the crack settles on the openness of its new damage and slip
+			advance(state, state.strain, 1e-6);
 		EXPECT_LT(norm(state.stress - moved.stress), 0.05 * norm(moved.stress));
 		EXPECT_EQ(norm(state.damage - moved.damage), 0);
 		EXPECT_EQ(state.plasticDissipation, moved.plasticDissipation);
@@ -172,10 +180,13 @@ TEST(ConcreteEnergy, closesToRoundOffInEveryStep) // ½(σ_old + σ_new):dε = d
 			for (int k = 1; k <= 200; ++k) {
 				const ConcreteState before = state;
 				advance(state, path.at(k / 200.), 1e-6, effects);
-				const double work   = 0.5 * doubleDot(before.stress + state.stress, state.strain - before.strain);
-				const double booked = storedEnergy(state) - storedEnergy(before) + state.plasticDissipation - before.plasticDissipation
-				        + state.damageDissipation - before.damageDissipation;
-				const double scale = norm(state.stress) * norm(state.strain) + state.plasticDissipation + std::abs(work);
+				const double work
+				        = 0.5 * doubleDot(before.stress + state.stress, state.strain - before.strain);
+				const double booked = storedEnergy(state) - storedEnergy(before)
+				        + state.plasticDissipation - before.plasticDissipation + state.damageDissipation
+				        - before.damageDissipation;
+				const double scale = norm(state.stress) * norm(state.strain) + state.plasticDissipation
+				        + std::abs(work);
 				ASSERT_NEAR(booked, work, 1e-11 * scale + 1e-9) << "effects " << effects;
 			}
 		}
@@ -213,10 +224,12 @@ TEST(ConcretePaths, stressDoesNotJumpWhenCracksClose)
 		for (int k = 1; k <= 8000; ++k) {
 			const ConcreteState before = state;
 			advance(state, path.at(k / 8000.), 1e-6, All & ~EquationOfState);
-			largest = std::max(largest, norm(state.stress - before.stress) / norm(state.strain - before.strain));
+			largest = std::max(
+			        largest, norm(state.stress - before.stress) / norm(state.strain - before.strain));
 		}
 	}
-	EXPECT_LT(largest, 20 * (concrete.lambda + concrete.twoShear)); // 4 is usual with the band of 1 MPa, 40 without a band
+	// 4 is usual with the band of 1 MPa, 40 without a band
+	EXPECT_LT(largest, 20 * (concrete.lambda + concrete.twoShear));
 }
 
 TEST(ConcretePaths, randomPathsStayFiniteAndBounded)
@@ -233,7 +246,9 @@ TEST(ConcretePaths, randomPathsStayFiniteAndBounded)
 			// no more than intact material with the stiffening of the present pressure: (3λ + 2μ) f |ε_e|
 			const double modulus = (1 + state.stiffening) * (3 * concrete.lambda + concrete.twoShear);
 			ASSERT_LE(norm(state.stress), modulus * norm(state.strain - state.plasticStrain) * (1 + 1e-12));
-			ASSERT_GE(state.damage.xx * state.damage.yy - state.damage.xy * state.damage.xy, -1e-9 * doubleDot(state.damage, state.damage));
+			ASSERT_GE(
+			        state.damage.xx * state.damage.yy - state.damage.xy * state.damage.xy,
+			        -1e-9 * doubleDot(state.damage, state.damage));
 			ASSERT_GE(damageRatio(concrete, state), 0);
 			ASSERT_LE(damageRatio(concrete, state), 1);
 		}
@@ -251,7 +266,8 @@ TEST(ConcretePaths, dissipationIsPositive)
 			advance(state, path.at(k / 3000.), 1e-6);
 			ASSERT_GE(state.damageDissipation, -1e-6 * (1 + state.plasticDissipation));
 			// the trapezoidal work of a step in which the stress reverses may be slightly negative
-			const double dissipated = state.plasticDissipation + state.damageDissipation, turnover = norm(state.stress) * norm(state.strain);
+			const double dissipated = state.plasticDissipation + state.damageDissipation,
+			             turnover = norm(state.stress) * norm(state.strain);
 			ASSERT_GE(dissipated, most - 1e-3 * (most + turnover)) << "path " << i << ", step " << k;
 			most = std::max(most, dissipated);
 		}
@@ -260,8 +276,9 @@ TEST(ConcretePaths, dissipationIsPositive)
 
 TEST(ConcretePaths, flowBoundsTheEquivalentStress)
 {
-	// Once ė_eq exceeds 2 M:C:ε̇/(M:C:M), σ_eq falls. With |ε̇|_C² ≤ 3B ε̇:ε̇ and |M|_C² least for equal tension, 4q²B, that is ė_eq ≤ 2√2 √(3/(4q²)) ė_N, so
-	// eq. 7 bounds σ_eq by 43 MPa at 1/s; the rate adds ė_N^((1−ω)/n_p).
+	// Once ė_eq exceeds 2 M:C:ε̇/(M:C:M), σ_eq falls. With |ε̇|_C² ≤ 3B ε̇:ε̇ and |M|_C² least for equal tension,
+	// 4q²B, that is ė_eq ≤ 2√2 √(3/(4q²)) ė_N, so eq. 7 bounds σ_eq by 43 MPa at 1/s;
+	// the rate adds ė_N^((1−ω)/n_p).
 	Random       random(20);
 	const double bound = 140e6 * std::pow(2 * std::sqrt(2.) * std::sqrt(3 / (4 * 0.66 * 0.66)) / 6.7, 2);
 	for (int i = 0; i < 300; ++i) {
@@ -273,7 +290,8 @@ TEST(ConcretePaths, flowBoundsTheEquivalentStress)
 			fastest                     = std::max(fastest, strainRateMeasure(increment) / 1e-5);
 			advance(state, path.at(k / 1000.), 1e-5, All & ~Energy);
 			const auto   principal  = principalStresses(state.stress, 0.05);
-			const double equivalent = equivalentStress(flowTensor(principal, frictionAt(concrete, pressure(state.stress))), state.stress);
+			const double equivalent = equivalentStress(
+			        flowTensor(principal, frictionAt(concrete, pressure(state.stress))), state.stress);
 			ASSERT_LT(equivalent, bound * std::pow(fastest, 0.08)) << "path " << i << ", step " << k;
 		}
 	}
@@ -298,7 +316,10 @@ TEST(ConcretePaths, fullDamageUnderReversal) // η_0 = 1 − 1e-12 asked for, th
 		ConcreteState state {};
 		state.damage = { size, 0.5 * size, 0, 0.3 * size };
 		for (int i = 1; i <= 4000; ++i) {
-			advance(state, { 2e-3 * std::sin(0.02 * i), 5e-3 * std::sin(0.013 * i), 0, 3e-3 * std::sin(0.007 * i) }, 1e-6);
+			advance(state,
+			        { 2e-3 * std::sin(0.02 * i), 5e-3 * std::sin(0.013 * i), 0,
+			          3e-3 * std::sin(0.007 * i) },
+			        1e-6);
 			ASSERT_TRUE(isFinite(state));
 			ASSERT_LT(state.stress.xx, 1e6) << "a crack bears no tension";
 		}

@@ -101,7 +101,10 @@ INSTANTIATE_TEST_SUITE_P(
                 BadValue { "closureBand", &P::closureBand, -1, "Pa" },
                 BadValue { "residual", &P::residual, 0, "[-]" }));
 
-TEST(ConcreteParameters, frictionInDegreesIsRecognised) { EXPECT_NE(complaint(&P::friction, 33).find("not an angle"), std::string::npos); }
+TEST(ConcreteParameters, frictionInDegreesIsRecognised)
+{
+	EXPECT_NE(complaint(&P::friction, 33).find("not an angle"), std::string::npos);
+}
 
 TEST(ConcretePower, agreesWithTheGeneralPower)
 {

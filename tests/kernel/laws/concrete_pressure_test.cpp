@@ -22,7 +22,8 @@ TEST(ConcretePressure, factorFollowsItsOwnPressure) // B = B_0 [1 + (p/p_EOS)^n]
 		const PreparedConcrete concrete = withExponent(n);
 		for (const double reference : { 1., 1e5, 3e7, 1.1e9, 4e10 }) {
 			const double stiffening = modulusStiffening(concrete, reference);
-			EXPECT_NEAR(stiffening, std::pow((1 + stiffening) * reference / 1.1e9, n), 1e-12 * stiffening) << "n " << n << " p " << reference;
+			EXPECT_NEAR(stiffening, std::pow((1 + stiffening) * reference / 1.1e9, n), 1e-12 * stiffening)
+			        << "n " << n << " p " << reference;
 		}
 	}
 }
@@ -42,9 +43,11 @@ TEST(ConcretePressure, doesNothingInTension)
 TEST(ConcretePressure, tangentFactorIsTheSlope)
 {
 	const PreparedConcrete concrete;
-	const auto             pressureAt = [&](double reference) { return reference * (1 + modulusStiffening(concrete, reference)); };
+	const auto             pressureAt
+	        = [&](double reference) { return reference * (1 + modulusStiffening(concrete, reference)); };
 	for (const double reference : { 1e6, 1e8, 1e9 }) {
-		const double h = 1e-5 * reference, slope = (pressureAt(reference + h) - pressureAt(reference - h)) / (2 * h);
+		const double h     = 1e-5 * reference,
+		             slope = (pressureAt(reference + h) - pressureAt(reference - h)) / (2 * h);
 		EXPECT_NEAR(tangentFactor(concrete, modulusStiffening(concrete, reference)), slope, 1e-8 * slope);
 	}
 	EXPECT_EQ(tangentFactor(concrete, 0), 1);
@@ -66,11 +69,13 @@ TEST(ConcretePressure, cycleReturnsStressAndEnergy)
 	}
 	EXPECT_LT(norm(state.stress), 1e-3);
 	EXPECT_NEAR(storedEnergy(state), work, 1e-12 * deepest);
-	EXPECT_LT(std::abs(storedEnergy(state)), 1e-10 * deepest); // the trapezoidal sums of loading and unloading cancel
+	// the trapezoidal sums of loading and unloading cancel
+	EXPECT_LT(std::abs(storedEnergy(state)), 1e-10 * deepest);
 	// ∫ p dθ with p = B_0 θ f: by Simpson's rule over the exact curve
 	double       integral   = 0;
 	const double end        = 0.03;
-	const auto   pressureAt = [&](double theta) { return 30e9 * theta * (1 + modulusStiffening(concrete, 30e9 * theta)); };
+	const auto   pressureAt
+	        = [&](double theta) { return 30e9 * theta * (1 + modulusStiffening(concrete, 30e9 * theta)); };
 	for (int i = 0; i < 1000; ++i) {
 		const double a = end * i / 1000, b = end * (i + 1) / 1000;
 		integral += (b - a) / 6 * (pressureAt(a) + 4 * pressureAt(0.5 * (a + b)) + pressureAt(b));

@@ -32,7 +32,9 @@ public:
 	explicit StrainPath(Random& random)
 	{
 		for (auto& wave : waves) {
-			wave.amplitude = { random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), 0, random.uniform(-2e-3, 2e-3) };
+			wave.amplitude = {
+				random.uniform(-2e-3, 2e-3), random.uniform(-2e-3, 2e-3), 0, random.uniform(-2e-3, 2e-3)
+			};
 			wave.frequency = random.uniform(1, 12);
 			wave.phase     = random.uniform(0, 6);
 		}
@@ -41,7 +43,8 @@ public:
 	{
 		PlaneTensor strain { 0, 0, 0, 0 };
 		for (const auto& wave : waves)
-			strain = strain + (std::sin(wave.frequency * t + wave.phase) - std::sin(wave.phase)) * wave.amplitude;
+			strain = strain
+			        + (std::sin(wave.frequency * t + wave.phase) - std::sin(wave.phase)) * wave.amplitude;
 		return strain;
 	}
 
@@ -80,7 +83,8 @@ TYPED_TEST(LawContract, parametersOutOfBoundsAreRefusedWithNameValueAndUnit)
 				ADD_FAILURE() << entry.name << " = " << bad << " was accepted";
 			} catch (const std::invalid_argument& error) {
 				const std::string text = error.what();
-				const bool moduli = std::string(entry.name) == "bulk" || std::string(entry.name) == "shear";
+				const bool        moduli
+				        = std::string(entry.name) == "bulk" || std::string(entry.name) == "shear";
 				EXPECT_NE(text.find(entry.name), std::string::npos) << text;
 				EXPECT_NE(text.find(moduli ? "Pa" : entry.unit), std::string::npos) << text;
 			}
@@ -104,7 +108,8 @@ TYPED_TEST(LawContract, stateIsWhatTheMaskNeedsAndTheBookComesLast)
 			numbers += f.components();
 		}
 		EXPECT_EQ(group->bytesPerTriangle(), 3 * numbers * sizeof(double)) << "mask " << mask;
-		EXPECT_EQ(group->state().bytes(), 3 * numbers * sizeof(double) * (256 + 48)) << "mask " << mask; // 44 triangles fill 6 batches of 8
+		// 44 triangles fill 6 batches of 8
+		EXPECT_EQ(group->state().bytes(), 3 * numbers * sizeof(double) * (256 + 48)) << "mask " << mask;
 		const auto without = group->fields();
 		group->keepBook(true, [](std::size_t) { return std::array<PlaneTensor, 3> {}; });
 		for (std::size_t i = 0; i < without.size(); i++)
@@ -124,7 +129,8 @@ template <class Law> struct Strained {
 		// loose triangles, so that each has its own strain
 		std::vector<Vertices> shapes;
 		for (std::size_t i = 0; i < count; i++) {
-			shapes.push_back(random.skewedTriangle(0.1)); // larger ones a law with a length of its own may refuse
+			// larger ones a law with a length of its own may refuse
+			shapes.push_back(random.skewedTriangle(0.1));
 			paths.emplace_back(random);
 		}
 		for (std::size_t row = 0; row < firstRow + count; row++) {
@@ -183,7 +189,8 @@ template <class Law> struct Strained {
 	}
 };
 
-TYPED_TEST(LawContract, placeOfATriangleDoesNotMatterBitByBit) // lane, place in the tile, neighbours, tile, start of the group
+// lane, place in the tile, neighbours, tile, start of the group
+TYPED_TEST(LawContract, placeOfATriangleDoesNotMatterBitByBit)
 {
 	constexpr std::size_t count = 21;
 	for (const RotationTreatment rotation : allTreatments)
@@ -193,14 +200,18 @@ TYPED_TEST(LawContract, placeOfATriangleDoesNotMatterBitByBit) // lane, place in
 				reference.move(i / 60., 0);
 			for (const std::size_t shift : { 1u, 2u, 3u, 5u, 7u, 250u }) {
 				Strained<TypeParam> shifted(count, shift, mask, rotation, 7);
-				if (shift % 2) setGroups<TypeParam>(shifted.system, Material(), typename TypeParam::Parameters(), mask, { shift + count });
+				if (shift % 2)
+					setGroups<TypeParam>(
+					        shifted.system, Material(), typename TypeParam::Parameters(), mask,
+					        { shift + count });
 				for (Points* points : { &shifted.system.motion.node, &shifted.system.motion.core })
 					std::fill(points->inverseMass.begin(), points->inverseMass.end(), 0.);
 				for (int i = 1; i <= 60; i++)
 					shifted.move(i / 60., shift);
 				for (std::size_t i = 0; i < count; i++)
 					ASSERT_EQ(reference.outputs(i), shifted.outputs(i + shift))
-					        << name(rotation) << ", mask " << mask << ", triangle " << i << ", moved by " << shift;
+					        << name(rotation) << ", mask " << mask << ", triangle " << i
+					        << ", moved by " << shift;
 			}
 		}
 }
@@ -218,7 +229,8 @@ TYPED_TEST(LawContract, lanesFollowThePoint) // the same law for one number and 
 		std::vector<PointOf<TypeParam>> points;
 		for (std::size_t i = 0; i < count; i++)
 			points.emplace_back(
-			        parameters, mask, TriangleProperties(sample.system.topology.reference(i).area(), -1, 1, { 0, 0, 0, 0 }));
+			        parameters, mask,
+			        TriangleProperties(sample.system.topology.reference(i).area(), -1, 1, { 0, 0, 0, 0 }));
 		using Leg     = PathLeg;
 		const auto by = Control::Strain;
 		for (int i = 1; i <= 100; i++) {
@@ -229,7 +241,8 @@ TYPED_TEST(LawContract, lanesFollowThePoint) // the same law for one number and 
 		for (std::size_t j = 0; j < count; j++) {
 			const auto stress = g.stress(j, sample.system.strain(j), dt);
 			for (std::size_t k = 0; k < 3; k++) {
-				EXPECT_NEAR(stress[k].xx, points[j].point().stress.xx, 1e3) << "mask " << mask; // [Pa] of 1e8
+				// [Pa] of 1e8
+				EXPECT_NEAR(stress[k].xx, points[j].point().stress.xx, 1e3) << "mask " << mask;
 				EXPECT_NEAR(stress[k].yy, points[j].point().stress.yy, 1e3) << "mask " << mask;
 				EXPECT_NEAR(stress[k].xy, points[j].point().stress.xy, 1e3) << "mask " << mask;
 			}
@@ -243,16 +256,22 @@ TYPED_TEST(LawContract, energyBookClosesInEveryStep) // ½(σ_old + σ_new):Δε
 	for (const unsigned mask : masks<TypeParam>())
 		for (int path = 0; path < 20; path++) {
 			const StrainPath   strain(random);
-			PointOf<TypeParam> point(typename TypeParam::Parameters(), mask | LawEffects::Energy, { 1e-4, -1, 1, { 0, 0, 0, 0 } });
+			PointOf<TypeParam> point(
+			        typename TypeParam::Parameters(), mask | LawEffects::Energy,
+			        { 1e-4, -1, 1, { 0, 0, 0, 0 } });
 			double             work = 0, largest = 0;
 			for (int i = 1; i <= steps; i++) {
 				const auto before = point.point();
-				point.run({ { Control::Strain, Control::Strain, Control::Strain, Control::Strain }, strain.at(double(i) / steps), dt, 1 });
+				point.run({ { Control::Strain, Control::Strain, Control::Strain, Control::Strain },
+				            strain.at(double(i) / steps),
+				            dt,
+				            1 });
 				const auto now = point.point();
 				work += 0.5 * doubleDot(before.stress + now.stress, now.strain - before.strain);
 				largest          = std::max({ largest, std::abs(work), now.energies.stored });
 				const double sum = now.energies.stored + now.energies.plastic + now.energies.damage;
-				ASSERT_NEAR(sum, work, 1e-9 * largest) << "mask " << mask << ", path " << path << ", step " << i;
+				ASSERT_NEAR(sum, work, 1e-9 * largest)
+				        << "mask " << mask << ", path " << path << ", step " << i;
 			}
 		}
 }
@@ -268,7 +287,8 @@ TYPED_TEST(LawContract, directionOfSpaceDoesNotMatter) // a turned path gives th
 	for (const unsigned mask : masks<TypeParam>()) {
 		const StrainPath   strain(random);
 		const double       angle = 0.7;
-		PointOf<TypeParam> plain(typename TypeParam::Parameters(), mask, { 1e-4, -1, 1, { 0, 0, 0, 0 } }), turned = plain;
+		PointOf<TypeParam> plain(typename TypeParam::Parameters(), mask, { 1e-4, -1, 1, { 0, 0, 0, 0 } }),
+		        turned = plain;
 		double             largest = 0, difference = 0;
 		const auto         by = Control::Strain;
 		for (int i = 1; i <= steps / 4; i++) {
@@ -283,7 +303,8 @@ TYPED_TEST(LawContract, directionOfSpaceDoesNotMatter) // a turned path gives th
 	}
 }
 
-TYPED_TEST(LawContract, fieldsAreAllThatIsRemembered) // a group that gets the fields of another by name goes on with the same bits
+// a group that gets the fields of another by name goes on with the same bits
+TYPED_TEST(LawContract, fieldsAreAllThatIsRemembered)
 {
 	for (const unsigned mask : masks<TypeParam>()) {
 		Strained<TypeParam> whole(11, 0, mask, RotationTreatment::Cosserat, 12);

@@ -11,7 +11,8 @@ namespace {
 using namespace yade::ddem;
 using namespace yade::ddem::samples;
 
-/// Polar moment of a solid triangle about its centroid over its mass: (a² + b² + c²)/36 of its edges (standard table of solids).
+/// Polar moment of a solid triangle about its centroid over its mass: (a² + b² + c²)/36 of its edges
+/// (standard table of solids).
 double solidGyration(const Vertices& v)
 {
 	double edges = 0;
@@ -29,7 +30,8 @@ TEST(LumpedMass, keepsMassCentroidAndInertiaForAnyShare)
 	for (int i = 0; i < 1000; i++) {
 		const Vertices v         = random.skewedTriangle();
 		const auto     reference = makeReference(v);
-		const auto     m         = lumpMass(reference, density, thickness, random.uniform(0.001, 0.249), RotationTreatment::Cosserat);
+		const auto m = lumpMass(
+		        reference, density, thickness, random.uniform(0.001, 0.249), RotationTreatment::Cosserat);
 		const double   mass      = density * thickness * 0.5 * cross(v[1] - v[0], v[2] - v[0]);
 		EXPECT_NEAR(3 * m.vertex + m.core, mass, 1e-13 * mass);
 		EXPECT_GT(m.vertex, 0);
@@ -62,7 +64,8 @@ TEST(LumpedMass, verticesAloneCarryTheWholeInertiaAtAQuarter) // the right share
 
 TEST(LumpedMass, givesEachVertexAThirdOfTheShare) // 3-4-5 triangle of 6 m² × 1 m × 100 kg/m³ = 600 kg
 {
-	const auto m = lumpMass(makeReference({ { { 0, 0 }, { 4, 0 }, { 0, 3 } } }), 100, 1, 0.2, RotationTreatment::Cosserat);
+	const auto m = lumpMass(
+	        makeReference({ { { 0, 0 }, { 4, 0 }, { 0, 3 } } }), 100, 1, 0.2, RotationTreatment::Cosserat);
 	EXPECT_DOUBLE_EQ(m.vertex, 40);
 	EXPECT_DOUBLE_EQ(m.core, 480);
 }
@@ -81,7 +84,8 @@ TEST(LumpedMass, leavesNoInertiaForTheCoreFromAQuarterOn)
 {
 	for (const double share : { 0.25, 0.3, 0.99 }) {
 		EXPECT_NE(refusal(2400, 1, share, RotationTreatment::Cosserat).find("1/4"), std::string::npos) << share;
-		EXPECT_EQ(refusal(2400, 1, share, RotationTreatment::None), "accepted"); // no rotation, no inertia needed
+		// no rotation, no inertia needed
+		EXPECT_EQ(refusal(2400, 1, share, RotationTreatment::None), "accepted");
 		EXPECT_EQ(refusal(2400, 1, share, RotationTreatment::Corotational), "accepted");
 	}
 	EXPECT_EQ(refusal(2400, 1, std::nextafter(0.25, 0), RotationTreatment::Cosserat), "accepted");
@@ -92,7 +96,8 @@ TEST(LumpedMass, refusesValuesOutOfRangeByNameValueAndUnit)
 	const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
 	for (const auto rotation : allTreatments) {
 		for (const double bad : { 0., -2400., nan, infinity }) {
-			const std::string density = refusal(bad, 1, 0.1, rotation), thickness = refusal(2400, bad, 0.1, rotation);
+			const std::string density   = refusal(bad, 1, 0.1, rotation),
+			                  thickness = refusal(2400, bad, 0.1, rotation);
 			EXPECT_NE(density.find("density"), std::string::npos) << bad << ": " << density;
 			EXPECT_NE(density.find("kg/m³"), std::string::npos) << bad << ": " << density;
 			EXPECT_NE(thickness.find("thickness"), std::string::npos) << bad << ": " << thickness;
@@ -102,7 +107,8 @@ TEST(LumpedMass, refusesValuesOutOfRangeByNameValueAndUnit)
 			EXPECT_NE(share.find("vertexShare"), std::string::npos) << bad << ": " << share;
 		}
 	}
-	EXPECT_NE(refusal(-2.5e-9, 1, 0.1, RotationTreatment::None).find("-2.5e-09"), std::string::npos); // the value itself, not 0.000000
+	// the value itself, not 0.000000
+	EXPECT_NE(refusal(-2.5e-9, 1, 0.1, RotationTreatment::None).find("-2.5e-09"), std::string::npos);
 }
 
 } // namespace

@@ -34,7 +34,8 @@ TEST(TileSums, addsNeighboursInPairs)
 	}());
 }
 
-/// What a domain that owns the tiles [begin, end) of all hands over: sums of its largest complete subtrees, each by its level and place.
+/// What a domain that owns the tiles [begin, end) of all hands over: sums of its largest complete subtrees,
+/// each by its level and place.
 struct Subtree {
 	std::size_t level, place;
 	double      sum;
@@ -46,9 +47,10 @@ void handOver(const std::vector<double>& all, std::size_t begin, std::size_t end
 		while (begin % (std::size_t(2) << level) == 0 && begin + (std::size_t(2) << level) <= end)
 			level++;
 		const std::size_t size = std::size_t(1) << level;
-		to.push_back({ level,
-			       begin >> level,
-			       treeSum(std::vector<double>(all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(begin + size))) });
+		to.push_back(
+		        { level, begin >> level,
+		          treeSum(std::vector<double>(
+		                  all.begin() + std::ptrdiff_t(begin), all.begin() + std::ptrdiff_t(begin + size))) });
 		begin += size;
 	}
 }
@@ -61,7 +63,8 @@ TEST(TileSums, domainsJoinTheirSubtreesToTheSameBits)
 		for (int division = 0; division < 20; division++) {
 			std::vector<Subtree> parts;
 			for (std::size_t begin = 0; begin < count;) {
-				const std::size_t end = std::min(count, begin + 1 + std::size_t(random.uniform(0, double(count) / 3)));
+				const std::size_t end = std::min(
+				        count, begin + 1 + std::size_t(random.uniform(0, double(count) / 3)));
 				handOver(all, begin, end, parts);
 				begin = end;
 			}
@@ -80,7 +83,8 @@ TEST(TileSums, domainsJoinTheirSubtreesToTheSameBits)
 					const bool left = there[2 * i], right = 2 * i + 1 < width && there[2 * i + 1];
 					const double sum = right ? now[2 * i] + now[2 * i + 1] : now[2 * i];
 					now[i]   = sum;
-					there[i] = left; // a pair of which nothing is there yet is a part of a higher level
+					// a pair of which nothing is there yet is a part of a higher level
+					there[i] = left;
 				}
 				for (std::size_t i = (width + 1) / 2; i < width; i++)
 					there[i] = 0;

@@ -36,7 +36,8 @@ void triangleStep(benchmark::State& state, const Scene& scene)
 		benchmark::DoNotOptimize(system.step(settings).kinetic);
 	const auto triangles              = double(mesh.triangle.size());
 	state.counters["triangles"]       = triangles;
-	state.counters["s/triangle-step"] = benchmark::Counter(triangles, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+	state.counters["s/triangle-step"] = benchmark::Counter(
+	        triangles, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 void sizes(benchmark::internal::Benchmark* b)

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// The energy book of the triangle system closes: kinetic + elastic + rotation energy changes by the works and the damping loss.
+// The energy book of the triangle system closes: kinetic + elastic + rotation energy changes by the
+// works and the damping loss.
 #include "../TriangleSamples.hpp"
 
 #include <gtest/gtest.h>
@@ -41,11 +42,17 @@ protected:
 		agitate(system, 5000 * strain, 5000 * strain / 0.005, 45);
 		return system;
 	}
-	/** The leapfrog's product energy is exact for linear forces; those of a rotating frame are linear up to the strain itself. Positions carry round-off
-	 * relative to the block, so small strains carry it relative to 1/strain. */
-	double tolerance(double strain) const { return GetParam() == RotationTreatment::None ? 2e-14 / strain : 0.02 * strain; }
+	/** The leapfrog's product energy is exact for linear forces; those of a rotating frame are linear up to the
+	 * strain itself. Positions carry round-off relative to the block,
+	 * so small strains carry it relative to 1/strain. */
+	double tolerance(double strain) const
+	{
+		return GetParam() == RotationTreatment::None ? 2e-14 / strain : 0.02 * strain;
+	}
 };
-INSTANTIATE_TEST_SUITE_P(, TriangleEnergy, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, TriangleEnergy, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
 TEST_P(TriangleEnergy, staysConstantInAnElasticBlock)
 {
@@ -62,7 +69,8 @@ TEST_P(TriangleEnergy, staysConstantInAnElasticBlock)
 	}
 }
 
-TEST_P(TriangleEnergy, closesWithEveryEffect) // prescribed and released degrees of freedom, gravity, forces from outside, damping
+// prescribed and released degrees of freedom, gravity, forces from outside, damping
+TEST_P(TriangleEnergy, closesWithEveryEffect)
 {
 	const double   strain = 1e-4;
 	TriangleSystem system = agitated(strain);

@@ -18,7 +18,8 @@ template <class Number> using Unknowns = std::array<Number, 9>;
 template <class Number> TriangleReference<Number> convert(const TriangleReference<double>& reference)
 {
 	return TriangleReference<Number>(
-	        { Number(reference.arm[0].x), Number(reference.arm[0].y) }, { Number(reference.arm[1].x), Number(reference.arm[1].y) });
+	        { Number(reference.arm[0].x), Number(reference.arm[0].y) },
+	        { Number(reference.arm[1].x), Number(reference.arm[1].y) });
 }
 
 template <class Number> struct Deformed {
@@ -26,7 +27,8 @@ template <class Number> struct Deformed {
 	PlaneRotation<Number>              frame;
 };
 
-template <class Frame, class Number> Deformed<Number> deform(const TriangleReference<Number>& reference, const Unknowns<Number>& x)
+template <class Frame, class Number>
+Deformed<Number> deform(const TriangleReference<Number>& reference, const Unknowns<Number>& x)
 {
 	Deformed<Number> state;
 	for (std::size_t e = 0; e < 3; e++)
@@ -38,13 +40,15 @@ template <class Frame, class Number> Deformed<Number> deform(const TriangleRefer
 }
 
 /// U = h [Σ_k S/3 (½ λ tr² ε_k + μ ε_k:ε_k) + ½ μ β_φ ε_φ² S]
-template <class Frame, class Number> Number energyOf(const TriangleReference<Number>& reference, const Unknowns<Number>& x, const Material& m)
+template <class Frame, class Number>
+Number energyOf(const TriangleReference<Number>& reference, const Unknowns<Number>& x, const Material& m)
 {
 	const Deformed<Number> state = deform<Frame>(reference, x);
 	Number                 density(0);
 	for (const auto& e : subElementStrains(reference, state.du)) {
 		const Number trace = e.xx + e.yy;
-		density += (0.5 * m.lambda() * trace * trace + m.shear * (e.xx * e.xx + e.yy * e.yy + 2. * e.xy * e.xy)) / 3.;
+		density += (0.5 * m.lambda() * trace * trace + m.shear * (e.xx * e.xx + e.yy * e.yy + 2. * e.xy * e.xy))
+		        / 3.;
 	}
 	if (Frame::coreRotates) {
 		const Number turn = rotationStrain(reference, state.du);
@@ -54,7 +58,8 @@ template <class Frame, class Number> Number energyOf(const TriangleReference<Num
 }
 
 /// The kernel's forces and moment in the order of Unknowns.
-template <class Frame, class Number> Unknowns<Number> forcesOf(const TriangleReference<Number>& reference, const Unknowns<Number>& x, const Material& m)
+template <class Frame, class Number>
+Unknowns<Number> forcesOf(const TriangleReference<Number>& reference, const Unknowns<Number>& x, const Material& m)
 {
 	const Deformed<Number>    state = deform<Frame>(reference, x);
 	SubElementTensors<Number> stress;
@@ -63,9 +68,12 @@ template <class Frame, class Number> Unknowns<Number> forcesOf(const TriangleRef
 		stress[k] = elasticStress(strain[k], Number(m.lambda()), Number(m.shear));
 	auto q = stressForces(reference, stress, Number(m.thickness));
 	if (Frame::coreRotates)
-		addRotationForces(reference, Number(m.shear * m.rotationStiffness) * rotationStrain(reference, state.du), Number(m.thickness), q);
+		addRotationForces(
+		        reference, Number(m.shear * m.rotationStiffness) * rotationStrain(reference, state.du),
+		        Number(m.thickness), q);
 	const auto f = Frame::distribute(reference, state.fromCentre, state.frame, state.du, q);
-	return { f.vertex[0].x, f.vertex[0].y, f.vertex[1].x, f.vertex[1].y, f.vertex[2].x, f.vertex[2].y, f.core.x, f.core.y, f.moment };
+	return { f.vertex[0].x, f.vertex[0].y, f.vertex[1].x, f.vertex[1].y, f.vertex[2].x,
+		 f.vertex[2].y, f.core.x,      f.core.y,      f.moment };
 }
 
 /// ∂f/∂x_i by a complex step: exact to round-off, there is no difference of near numbers.
@@ -78,7 +86,8 @@ template <class Function> auto derivative(const Function& f, const Unknowns<doub
 	return f(z, step);
 }
 
-/// A finite deformation (up to 20 %, not homogeneous) in any position and orientation, the core off the centroid and turned by itself.
+/// A finite deformation (up to 20 %, not homogeneous) in any position and orientation,
+/// the core off the centroid and turned by itself.
 Unknowns<double> deformedPlaces(const TriangleReference<double>& reference, Random& random)
 {
 	const double           angle = random.uniform(-10, 10), size = std::sqrt(reference.area());
@@ -134,7 +143,10 @@ TYPED_TEST(TriangleForces, areMinusTheGradientOfTheEnergyAtFiniteDeformation)
 		const double size = std::sqrt(reference.area()), scale = scaleOf(force, size);
 		for (std::size_t j = 0; j < 9; j++) {
 			const double slope = derivative(
-			        [&](const Unknowns<Complex>& z, double step) { return energyOf<TypeParam>(complex, z, material).imag() / step; }, x, j);
+			        [&](const Unknowns<Complex>& z, double step) {
+				        return energyOf<TypeParam>(complex, z, material).imag() / step;
+			        },
+			        x, j);
 			EXPECT_NEAR(force[j], -slope, 1e-12 * scale * (j == 8 ? size : 1)) << "unknown " << j;
 		}
 	}
@@ -163,7 +175,8 @@ TYPED_TEST(TriangleForces, conserveMomentum)
 		const double size = std::sqrt(reference.area()), scale = scaleOf(f, size);
 		EXPECT_NEAR(f[0] + f[2] + f[4] + f[6], 0, 1e-14 * scale);
 		EXPECT_NEAR(f[1] + f[3] + f[5] + f[7], 0, 1e-14 * scale);
-		if (std::is_same_v<TypeParam, FrameNone>) continue; // R = 1 is not objective: its angular momentum balances at rest only
+		// R = 1 is not objective: its angular momentum balances at rest only
+		if (std::is_same_v<TypeParam, FrameNone>) continue;
 		double torque = f[8];
 		for (std::size_t e = 0; e < 3; e++)
 			torque += (x[2 * e] - x[6]) * f[2 * e + 1] - (x[2 * e + 1] - x[7]) * f[2 * e];
@@ -175,12 +188,14 @@ TYPED_TEST(TriangleForces, haveTheElementStiffnessAsTheirDerivativeAtRest)
 {
 	Random                  random(14);
 	const Material          material { 30e9, 26e9, 2, 2400, 0.7, 1. / 6 };
-	const RotationTreatment rotation = TypeParam::coreRotates ? RotationTreatment::Cosserat : RotationTreatment::Corotational;
+	const RotationTreatment rotation
+	        = TypeParam::coreRotates ? RotationTreatment::Cosserat : RotationTreatment::Corotational;
 	for (int i = 0; i < 200; i++) {
 		const auto          reference = makeReference(random.skewedTriangle());
 		const auto          complex   = convert<Complex>(reference);
 		const double        size      = std::sqrt(reference.area());
-		const ElementMatrix stiffness = elementStiffness(reference, material.stiffness(), material.thickness, rotation);
+		const ElementMatrix stiffness
+		        = elementStiffness(reference, material.stiffness(), material.thickness, rotation);
 		ElementMatrix       slopes;
 		for (int column = 0; column < 9; column++) {
 			const auto slope = derivative(
@@ -199,20 +214,25 @@ TYPED_TEST(TriangleForces, haveTheElementStiffnessAsTheirDerivativeAtRest)
 		ElementVector units       = ElementVector::Ones(); // newtons per metre throughout
 		units[8]                  = 1 / size;
 		const ElementMatrix error = units.asDiagonal() * (slopes - stiffness) * units.asDiagonal();
-		EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-12 * (units.asDiagonal() * stiffness * units.asDiagonal()).cwiseAbs().maxCoeff());
+		EXPECT_LT(
+		        error.cwiseAbs().maxCoeff(),
+		        1e-12 * (units.asDiagonal() * stiffness * units.asDiagonal()).cwiseAbs().maxCoeff());
 	}
 }
 
-TEST(StressForces, areTheDivergenceTheoremsTractions) // a homogeneous stress loads a vertex by ½ h σ·(outward normals of its two edges)
+// a homogeneous stress loads a vertex by ½ h σ·(outward normals of its two edges)
+TEST(StressForces, areTheDivergenceTheoremsTractions)
 {
 	Random random(15);
 	for (int i = 0; i < 200; i++) {
 		const auto                  reference = makeReference(random.skewedTriangle());
-		const InPlaneTensor<double> stress { random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1) };
+		const InPlaneTensor<double> stress { random.uniform(-1, 1), random.uniform(-1, 1),
+			                             random.uniform(-1, 1) };
 		const double                thickness = 0.3;
 		const auto                  q         = stressForces(reference, { stress, stress, stress }, thickness);
 		for (std::size_t e = 0; e < 3; e++) {
-			const Point chord    = reference.arm[(e + 2) % 3] - reference.arm[(e + 1) % 3]; // both edges' normals sum to the opposite one's reverse
+			// both edges' normals sum to the opposite one's reverse
+			const Point chord    = reference.arm[(e + 2) % 3] - reference.arm[(e + 1) % 3];
 			const Point expected = stress * ((-0.5 * thickness) * Point { chord.y, -chord.x });
 			EXPECT_NEAR(q[e].x, expected.x, 1e-14 * thickness * std::hypot(chord.x, chord.y) * 10);
 			EXPECT_NEAR(q[e].y, expected.y, 1e-14 * thickness * std::hypot(chord.x, chord.y) * 10);
@@ -230,7 +250,8 @@ TEST(ElasticStress, isIsotropicAndStoresHalfItsWork) // σ = λ tr ε 1 + 2μ ε
 	EXPECT_DOUBLE_EQ(energyDensity(stress, strain), 1.5 * 0.25 + 5 * (0.49 + 0.04 + 2 * 0.16));
 }
 
-TEST(CoreMoment, comesFromTheRotationStrainAloneAtSmallStrain) // stress is symmetric: its moment is of second order, that of ε_φ is h S μ β_φ ε_φ
+// stress is symmetric: its moment is of second order, that of ε_φ is h S μ β_φ ε_φ
+TEST(CoreMoment, comesFromTheRotationStrainAloneAtSmallStrain)
 {
 	Random         random(16);
 	const Material material;
@@ -241,9 +262,11 @@ TEST(CoreMoment, comesFromTheRotationStrainAloneAtSmallStrain) // stress is symm
 		for (std::size_t j = 0; j < 6; j++)
 			x[j] += small * size * random.uniform(-1, 1);
 		const auto   state = deform<FrameCosserat>(reference, x);
-		const double expected
-		        = material.thickness * reference.area() * material.shear * material.rotationStiffness * rotationStrain(reference, state.du);
-		EXPECT_NEAR(forcesOf<FrameCosserat>(reference, x, material)[8], expected, 1e3 * small * small * material.bulk * size * size);
+		const double expected = material.thickness * reference.area() * material.shear
+		        * material.rotationStiffness * rotationStrain(reference, state.du);
+		EXPECT_NEAR(
+		        forcesOf<FrameCosserat>(reference, x, material)[8], expected,
+		        1e3 * small * small * material.bulk * size * size);
 	}
 }
 

@@ -52,21 +52,28 @@ TEST(TriangleReference, smallestHeightStandsOnTheLongestEdge) // 3-4-5 triangle:
 
 TEST(TriangleReference, refusesClockwiseOrderAndOffersTheFlip)
 {
-	expectWords(refusal({ { { 0.25, 0 }, { 0, 3.5 }, { 4, 0 } } }), { "clockwise", "(0.25, 0)", "(0, 3.5)", "(4, 0)", " m", "swap", "flip" });
+	expectWords(
+	        refusal({ { { 0.25, 0 }, { 0, 3.5 }, { 4, 0 } } }),
+	        { "clockwise", "(0.25, 0)", "(0, 3.5)", "(4, 0)", " m", "swap", "flip" });
 }
 
 TEST(TriangleReference, refusesDegenerateTriangles)
 {
-	expectWords(refusal({ { { 0, 0 }, { 1.5, 1.5 }, { 3, 3 } } }), { "degenerate", "(0, 0)", "(1.5, 1.5)", "(3, 3)", "line", "remesh" });
+	expectWords(
+	        refusal({ { { 0, 0 }, { 1.5, 1.5 }, { 3, 3 } } }),
+	        { "degenerate", "(0, 0)", "(1.5, 1.5)", "(3, 3)", "line", "remesh" });
 	expectWords(refusal({ { { 2, 1 }, { 2, 1 }, { 3, 3 } } }), { "degenerate", "(2, 1)" });
 	expectWords(refusal({ { { 2, 1 }, { 2, 1 }, { 2, 1 } } }), { "degenerate", "(2, 1)" });
-	expectWords(refusal({ { { 0, 0 }, { 1, -1e-11 }, { 2, 0 } } }), { "degenerate" }); // neither order would be right: not called clockwise
+	// neither order would be right: not called clockwise
+	expectWords(refusal({ { { 0, 0 }, { 1, -1e-11 }, { 2, 0 } } }), { "degenerate" });
 }
 
 TEST(TriangleReference, flatnessIsJudgedByShapeNotBySize)
 {
 	for (const double size : { 1e-9, 1., 1e9 }) {
-		const auto flat = [size](double height) { return Vertices { { { 0, 0 }, { size, 0 }, { 0.3 * size, height * size } } }; };
+		const auto flat = [size](double height) {
+			return Vertices { { { 0, 0 }, { size, 0 }, { 0.3 * size, height * size } } };
+		};
 		EXPECT_EQ(refusal(flat(2e-10)), "accepted") << size;
 		expectWords(refusal(flat(0.5e-10)), { "degenerate" });
 	}

@@ -19,7 +19,8 @@ protected:
 	const Mesh mesh = rectangle(20, 15, 0.2, 0.15, 0.25, 13);
 
 	/// The state after a good step, spoilt, and one more step that must throw.
-	Motion::Place placeAfter(const std::function<void(TriangleSystem&, StepSettings&)>& spoil, unsigned effects) const
+	Motion::Place
+	placeAfter(const std::function<void(TriangleSystem&, StepSettings&)>& spoil, unsigned effects) const
 	{
 		TriangleSystem system = makeSystem(mesh, Material(), GetParam());
 		for (Points* points : { &system.motion.node, &system.motion.core })
@@ -39,7 +40,9 @@ protected:
 		return system.motion.firstNotFinite();
 	}
 };
-INSTANTIATE_TEST_SUITE_P(, NotFinite, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, NotFinite, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
 TEST_P(NotFinite, isCaughtInTheStepItAppearsAndNamed)
 {
@@ -47,10 +50,14 @@ TEST_P(NotFinite, isCaughtInTheStepItAppearsAndNamed)
 	const std::size_t node = 37, triangle = 411;
 	for (const double bad : { nan, infinity, -infinity })
 		for (unsigned effects = 0; effects < 8; effects++) {
-			const Spoil nodeForce    = [&](TriangleSystem& s, StepSettings&) { s.motion.node.external[2 * node + 1] = bad; };
-			const Spoil coreForce    = [&](TriangleSystem& s, StepSettings&) { s.motion.core.external[2 * triangle] = bad; };
-			const Spoil nodeVelocity = [&](TriangleSystem& s, StepSettings&) { s.motion.node.velocity[2 * node] = bad; };
-			const Spoil prescribed   = [&](TriangleSystem& s, StepSettings&) { s.motion.node.velocity[2 * 30] = bad; };
+			const Spoil nodeForce
+			        = [&](TriangleSystem& s, StepSettings&) { s.motion.node.external[2 * node + 1] = bad; };
+			const Spoil coreForce
+			        = [&](TriangleSystem& s, StepSettings&) { s.motion.core.external[2 * triangle] = bad; };
+			const Spoil nodeVelocity
+			        = [&](TriangleSystem& s, StepSettings&) { s.motion.node.velocity[2 * node] = bad; };
+			const Spoil prescribed
+			        = [&](TriangleSystem& s, StepSettings&) { s.motion.node.velocity[2 * 30] = bad; };
 			for (const Spoil& spoil : { nodeForce, nodeVelocity }) {
 				const auto place = placeAfter(spoil, effects);
 				EXPECT_TRUE(place.found && place.isNode);
@@ -64,18 +71,27 @@ TEST_P(NotFinite, isCaughtInTheStepItAppearsAndNamed)
 			EXPECT_EQ(place.index, 30u);
 			// a bad position spoils the forces of its triangles at once
 			const auto& corners = mesh.triangle[triangle];
-			place               = placeAfter([&](TriangleSystem& s, StepSettings&) { s.motion.core.position[2 * triangle] = bad; }, effects);
+			place = placeAfter(
+			        [&](TriangleSystem& s, StepSettings&) { s.motion.core.position[2 * triangle] = bad; },
+			        effects);
 			EXPECT_TRUE(place.found && place.isNode);
 			EXPECT_EQ(place.index, std::size_t(*std::min_element(corners.begin(), corners.end())));
 			if (GetParam() != RotationTreatment::Cosserat) continue;
-			place = placeAfter([&](TriangleSystem& s, StepSettings&) { s.motion.spin.external[triangle] = bad; }, effects);
+			place = placeAfter(
+			        [&](TriangleSystem& s, StepSettings&) { s.motion.spin.external[triangle] = bad; },
+			        effects);
 			EXPECT_TRUE(place.found && !place.isNode);
 			EXPECT_EQ(place.index, triangle);
-			EXPECT_TRUE(placeAfter([&](TriangleSystem& s, StepSettings&) { s.motion.spin.angle[triangle] = bad; }, effects).found);
+			EXPECT_TRUE(
+			        placeAfter(
+			                [&](TriangleSystem& s, StepSettings&) { s.motion.spin.angle[triangle] = bad; },
+			                effects)
+			                .found);
 		}
 }
 
-TEST_P(NotFinite, triangleTurnedInsideOutIsFiniteStill) // an inverted or collapsed element pushes back, it does not divide by zero
+// an inverted or collapsed element pushes back, it does not divide by zero
+TEST_P(NotFinite, triangleTurnedInsideOutIsFiniteStill)
 {
 	const Vertices v      = { { { 0, 0 }, { 2, 0.3 }, { 0.4, 1.1 } } };
 	TriangleSystem system = makeSystem(single(v), Material(), GetParam());

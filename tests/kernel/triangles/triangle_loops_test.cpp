@@ -39,7 +39,9 @@ struct LooseElements {
 			const Point    centre = random.point(10);
 			for (std::size_t e = 0; e < 3; e++) {
 				const std::int32_t node = places[3 * i + e];
-				const Point x = centre + PlaneRotation<double> { std::cos(angle), std::sin(angle) } * (reference.arm[e] + random.point(0.1 * size));
+				const Point        x    = centre
+				        + PlaneRotation<double> { std::cos(angle), std::sin(angle) }
+				                * (reference.arm[e] + random.point(0.1 * size));
 				vertex[e].push_back(node);
 				nodePosition[2 * std::size_t(node)]     = x.x;
 				nodePosition[2 * std::size_t(node) + 1] = x.y;
@@ -105,13 +107,15 @@ struct LooseElements {
 };
 
 /// The same element by the scalar functions that the other tests check.
-template <class Frame> std::array<double, 9> byFunctions(const LooseElements& all, std::size_t i, double& elastic, double& rotational)
+template <class Frame>
+std::array<double, 9> byFunctions(const LooseElements& all, std::size_t i, double& elastic, double& rotational)
 {
 	const TriangleReference<double> reference({ all.arm[0][i], all.arm[1][i] }, { all.arm[2][i], all.arm[3][i] });
 	RelativeDisplacements<double>   fromCentre, du;
 	for (std::size_t e = 0; e < 3; e++) {
 		const auto v  = std::size_t(all.vertex[e][i]);
-		fromCentre[e] = { all.nodePosition[2 * v] - all.corePosition[2 * i], all.nodePosition[2 * v + 1] - all.corePosition[2 * i + 1] };
+		fromCentre[e] = { all.nodePosition[2 * v] - all.corePosition[2 * i],
+			          all.nodePosition[2 * v + 1] - all.corePosition[2 * i + 1] };
 	}
 	const auto frame = Frame::rotation(reference, fromCentre, all.coreAngle[i]);
 	for (std::size_t e = 0; e < 3; e++)
@@ -125,8 +129,11 @@ template <class Frame> std::array<double, 9> byFunctions(const LooseElements& al
 	auto q = stressForces(reference, stress, all.material.thickness);
 	if (Frame::coreRotates) {
 		const double turn = rotationStrain(reference, du);
-		addRotationForces(reference, (all.material.shear * all.material.rotationStiffness) * turn, all.material.thickness, q);
-		rotational += 0.5 * all.material.thickness * reference.area() * (all.material.shear * all.material.rotationStiffness) * turn * turn;
+		addRotationForces(
+		        reference, (all.material.shear * all.material.rotationStiffness) * turn, all.material.thickness,
+		        q);
+		rotational += 0.5 * all.material.thickness * reference.area()
+		        * (all.material.shear * all.material.rotationStiffness) * turn * turn;
 	}
 	const auto f = Frame::distribute(reference, fromCentre, frame, du, q);
 	return { f.vertex[0].x, f.vertex[0].y, f.vertex[1].x,
@@ -136,40 +143,48 @@ template <class Frame> std::array<double, 9> byFunctions(const LooseElements& al
 
 class ElementLoops : public testing::TestWithParam<RotationTreatment> {
 protected:
-	std::array<double, 9> expected(const LooseElements& all, std::size_t i, double& elastic, double& rotational) const
+	std::array<double, 9>
+	expected(const LooseElements& all, std::size_t i, double& elastic, double& rotational) const
 	{
 		switch (GetParam()) {
 			case RotationTreatment::None: return byFunctions<FrameNone>(all, i, elastic, rotational);
-			case RotationTreatment::Corotational: return byFunctions<FrameCorotational>(all, i, elastic, rotational);
+			case RotationTreatment::Corotational:
+				return byFunctions<FrameCorotational>(all, i, elastic, rotational);
 			default: return byFunctions<FrameCosserat>(all, i, elastic, rotational);
 		}
 	}
 };
-INSTANTIATE_TEST_SUITE_P(, ElementLoops, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, ElementLoops, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
-TEST_P(ElementLoops, agreeWithTheElementFunctionsInAnyPartOfAGroup) // SIMD width 4: every length and every start of a tail
+// SIMD width 4: every length and every start of a tail
+TEST_P(ElementLoops, agreeWithTheElementFunctionsInAnyPartOfAGroup)
 {
 	for (const bool energy : { false, true })
 		for (const bool widest : { false, true })
 			for (std::size_t begin = 0; begin < 5; begin++)
 				for (std::size_t end = begin; end < begin + 14; end++) {
 					LooseElements    elements(20);
-					const StepEnergy sum     = elements.apply(GetParam(), widest, energy, begin, end);
+					const StepEnergy sum = elements.apply(GetParam(), widest, energy, begin, end);
 					double           elastic = 0, rotational = 0;
 					for (std::size_t i = 0; i < elements.size(); i++) {
 						const auto got = elements.outputs(i);
 						if (i < begin || i >= end) {
 							for (const double value : got)
 								EXPECT_EQ(value, LooseElements::untouched)
-								        << "element " << i << " of [" << begin << ", " << end << ")";
+								        << "element " << i << " of [" << begin << ", "
+								        << end << ")";
 							continue;
 						}
 						const auto   wanted = expected(elements, i, elastic, rotational);
-						const double scale  = *std::max_element(
-                                                        wanted.begin(), wanted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+						const double scale = *std::max_element(
+						        wanted.begin(), wanted.end(),
+						        [](double a, double b) { return std::abs(a) < std::abs(b); });
 						for (std::size_t c = 0; c < 9; c++)
 							EXPECT_NEAR(got[c], wanted[c], 1e-12 * std::abs(scale))
-							        << "element " << i << " of [" << begin << ", " << end << ")";
+							        << "element " << i << " of [" << begin << ", " << end
+							        << ")";
 					}
 					EXPECT_NEAR(sum.elastic, energy ? elastic : 0, 1e-12 * elastic);
 					EXPECT_NEAR(sum.rotation, energy ? rotational : 0, 1e-12 * rotational);
@@ -181,7 +196,8 @@ template <class Frame> void expectWidest(RotationTreatment rotation)
 	for (const unsigned effects : { 0u, unsigned(LawEffects::Energy) }) {
 		const auto wide     = LawLoops<Elastic, Frame, Avx2>::select(effects).law;
 		const auto baseline = LawLoops<Elastic, Frame, Baseline>::select(effects).law;
-		EXPECT_EQ(selectTileLoops<Elastic>(effects, rotation).law, processorHasAvx2() && wide ? wide : baseline);
+		EXPECT_EQ(
+		        selectTileLoops<Elastic>(effects, rotation).law, processorHasAvx2() && wide ? wide : baseline);
 		EXPECT_EQ(selectTileLoops<Elastic>(effects, rotation, false).law, baseline);
 		EXPECT_NE(wide, baseline);
 	}
@@ -212,7 +228,9 @@ std::vector<double> stateOf(const TriangleSystem& s)
 }
 
 class TriangleOrder : public testing::TestWithParam<RotationTreatment> { };
-INSTANTIATE_TEST_SUITE_P(, TriangleOrder, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, TriangleOrder, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
 TEST_P(TriangleOrder, threadsDoNotMatterBitByBit) // 2640 triangles and 1394 nodes: several pieces for each thread
 {
@@ -237,7 +255,8 @@ TEST_P(TriangleOrder, threadsDoNotMatterBitByBit) // 2640 triangles and 1394 nod
 	EXPECT_EQ(one, result(1));
 }
 
-/// Runs a mesh whose nodes have velocities of their own and returns node positions and triangles' frame angles, in the mesh's order.
+/// Runs a mesh whose nodes have velocities of their own and returns node positions and triangles' frame angles,
+/// in the mesh's order.
 struct Outcome {
 	std::vector<Point>  node;
 	std::vector<double> angle;
@@ -259,7 +278,8 @@ Outcome motionOf(const Mesh& mesh, const std::vector<Point>& nodeVelocity, Rotat
 }
 
 struct Scene {
-	Mesh               mesh = rectangle(9, 13, 0.09, 0.13, 0.25, 11); // 234 triangles: not a multiple of a SIMD width
+	// 234 triangles: not a multiple of a SIMD width
+	Mesh               mesh = rectangle(9, 13, 0.09, 0.13, 0.25, 11);
 	std::vector<Point> velocity;
 	Scene()
 	{
@@ -342,7 +362,8 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 	const Mesh     mesh  = rectangle(20, 15, 0.2, 0.15, 0.25, 12); // 600 triangles
 	TriangleSystem whole = makeSystem(mesh, Material(), GetParam());
 	agitate(whole, 20, 1000, 55);
-	const std::size_t ends[] = { 1, 258, 258, 590, 600 }; // a group of one, one longer than a tile, an empty one, odd lengths
+	// a group of one, one longer than a tile, an empty one, odd lengths
+	const std::size_t ends[] = { 1, 258, 258, 590, 600 };
 	TriangleSystem cut = whole, concrete = whole;
 	setGroups<Elastic>(cut, Material(), ElasticParameters(), 0, { std::begin(ends), std::end(ends) });
 	setGroups<ConcreteDamage>(concrete, Material(), ConcreteParameters(), 0, { std::begin(ends), std::end(ends) });
@@ -358,8 +379,8 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 	}
 	// where groups are cut does not change a bit
 	EXPECT_EQ(stateOf(whole), stateOf(cut));
-	for (const std::size_t i :
-	     { std::size_t(0), std::size_t(1), std::size_t(257), std::size_t(258), std::size_t(589), std::size_t(590), std::size_t(599) }) {
+	for (const std::size_t i : { std::size_t(0), std::size_t(1), std::size_t(257), std::size_t(258),
+	                             std::size_t(589), std::size_t(590), std::size_t(599) }) {
 		EXPECT_EQ(&cut.groupOf(i), &*cut.group[i < 1 ? 0 : i < 258 ? 1 : i < 590 ? 3 : 4]);
 		const auto   wanted = whole.stress(i), got = cut.stress(i);
 		const double roundOff = 0.1; // [Pa] of 1e8
@@ -372,11 +393,13 @@ TEST_P(TriangleOrder, groupsMayBeCutAnywhereAndMixLaws) // the concrete law with
 	}
 }
 
-TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow, rate, damage, equation of state and energies
+// with flow, rate, damage, equation of state and energies
+TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement)
 {
 	const Mesh     mesh   = rectangle(10, 15, 0.1, 0.15, 0.25, 14); // 300 triangles
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam());
-	setGroups<ConcreteDamage>(system, Material(), ConcreteParameters(), ConcreteEffects::All, { 7, 300 }); // an odd start of the second
+	// an odd start of the second
+	setGroups<ConcreteDamage>(system, Material(), ConcreteParameters(), ConcreteEffects::All, { 7, 300 });
 	Random              random(56);
 	std::vector<double> fractureEnergy;
 	for (auto& g : system.group) {
@@ -426,15 +449,20 @@ TEST_P(TriangleOrder, concreteElementsFollowTheLawOfOneSubElement) // with flow,
 			for (std::size_t k = 0; k < 3; k++) {
 				State       wanted = stateIn(before, i, k);
 				const State got    = stateIn(system, i, k);
-				advanceConcrete<ConcreteEffects::All>(law, FractureEnergyOf<double>(fractureEnergy[i]), strain[k], settings.dt, wanted);
+				advanceConcrete<ConcreteEffects::All>(
+				        law, FractureEnergyOf<double>(fractureEnergy[i]), strain[k], settings.dt,
+				        wanted);
 				const auto close = [&](const PlaneTensor& a, const PlaneTensor& b, double unit) {
-					return std::max({ std::abs(a.xx - b.xx), std::abs(a.yy - b.yy), std::abs(a.zz - b.zz), std::abs(a.xy - b.xy) })
+					return std::max({ std::abs(a.xx - b.xx), std::abs(a.yy - b.yy),
+					                  std::abs(a.zz - b.zz), std::abs(a.xy - b.xy) })
 					        < 1e-7 * unit;
 				};
-				ASSERT_TRUE(close(got.stress, wanted.stress, 1e7)) << "step " << step << ", triangle " << i << ", sub-element " << k;
+				ASSERT_TRUE(close(got.stress, wanted.stress, 1e7))
+				        << "step " << step << ", triangle " << i << ", sub-element " << k;
 				ASSERT_TRUE(close(got.plasticStrain, wanted.plasticStrain, 1e-3))
 				        << "step " << step << ", triangle " << i << ", sub-element " << k;
-				ASSERT_TRUE(close(got.damage, wanted.damage, 1)) << "step " << step << ", triangle " << i << ", sub-element " << k;
+				ASSERT_TRUE(close(got.damage, wanted.damage, 1))
+				        << "step " << step << ", triangle " << i << ", sub-element " << k;
 				const double share = system.topology.reference(i).area() / 3;
 				stored += share * storedEnergy(got);
 				plastic += share * got.plasticDissipation;

@@ -20,7 +20,8 @@ Momentum momentumOf(const TriangleSystem& s)
 	for (const Points* points : { &s.motion.node, &s.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++) {
 			const double m = points->mass[i];
-			const Point  x { points->position[2 * i], points->position[2 * i + 1] }, v { points->velocity[2 * i], points->velocity[2 * i + 1] };
+			const Point  x { points->position[2 * i], points->position[2 * i + 1] },
+			        v { points->velocity[2 * i], points->velocity[2 * i + 1] };
 			p.x += m * v.x;
 			p.y += m * v.y;
 			p.angular += m * cross(x, v);
@@ -33,7 +34,9 @@ Momentum momentumOf(const TriangleSystem& s)
 }
 
 class TriangleMotion : public testing::TestWithParam<RotationTreatment> { };
-INSTANTIATE_TEST_SUITE_P(, TriangleMotion, testing::ValuesIn(allTreatments), [](const auto& test) { return name(test.param); });
+INSTANTIATE_TEST_SUITE_P(, TriangleMotion, testing::ValuesIn(allTreatments), [](const auto& test) {
+	return name(test.param);
+});
 
 TEST_P(TriangleMotion, isStableJustBelowTheCriticalStepAndNotJustAbove) // the bound is sharp for a free triangle
 {
@@ -41,7 +44,8 @@ TEST_P(TriangleMotion, isStableJustBelowTheCriticalStepAndNotJustAbove) // the b
 	for (int i = 0; i < 5; i++) {
 		const Vertices corners  = random.skewedTriangle();
 		const Mesh     mesh     = single(corners);
-		const double   critical = criticalStep(mesh, Material(), GetParam()), size = std::sqrt(makeReference(corners).area());
+		const double critical = criticalStep(mesh, Material(), GetParam()),
+		             size = std::sqrt(makeReference(corners).area());
 		const auto     largestStrain = [&](double fraction, int steps) {
                         TriangleSystem system = makeSystem(mesh, Material(), GetParam());
                         agitate(system, 1e-9 * size / critical, 1e-9 / critical, 42);
@@ -49,11 +53,13 @@ TEST_P(TriangleMotion, isStableJustBelowTheCriticalStepAndNotJustAbove) // the b
                         for (int step = 0; step < steps; step++) {
                                 system.step(stepOf(fraction * critical));
                                 for (const auto& strain : system.strain(0))
-                                        worst = std::max({ worst, std::abs(strain.xx), std::abs(strain.yy), std::abs(strain.xy) });
-                        }
+					worst = std::max({ worst, std::abs(strain.xx), std::abs(strain.yy),
+					                   std::abs(strain.xy) });
+			}
                         return worst;
 		};
-		// At 0.99 the leapfrog's own invariant allows amplitudes up to 1/√(1 − 0.99²) = 7 times those of the exact motion; the triangle may be a sliver (20).
+		// At 0.99 the leapfrog's own invariant allows amplitudes up to 1/√(1 − 0.99²) = 7 times those of the
+		// exact motion; the triangle may be a sliver (20).
 		EXPECT_LT(largestStrain(0.99, 20000), 7 * 20 * 1e-9 * 3) << "triangle " << i;
 		// Above, growth per step is exp(2 acosh 1.01) = 1.33: 1e8 in 64 steps.
 		EXPECT_GT(largestStrain(1.01, 100), 1e-4) << "triangle " << i;
@@ -86,15 +92,18 @@ TEST_P(TriangleMotion, fallsOnAParabola) // leapfrog from rest: x_n = g dt² n(n
 	const int    steps      = 1000;
 	const double fall       = settings.dt * settings.dt * steps * (steps + 1) / 2;
 	run(system, settings, steps);
-	for (const auto& [now, then] : { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
+	for (const auto& [now, then] :
+	     { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
 		for (std::size_t i = 0; i < now->size(); i++) {
 			EXPECT_NEAR(now->position[2 * i], then->position[2 * i] + 3e4 * fall, 1e-11 * 9e4 * fall);
-			EXPECT_NEAR(now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-11 * 9e4 * fall);
+			EXPECT_NEAR(
+			        now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-11 * 9e4 * fall);
 		}
 	EXPECT_LT(largest(system.motion.spin.angle), 1e-10);
 }
 
-TEST_P(TriangleMotion, fallsOnTheSameParabolaWithStepsThatChange) // from rest half a step early: x = g t (t + dt_0)/2 exactly
+// from rest half a step early: x = g t (t + dt_0)/2 exactly
+TEST_P(TriangleMotion, fallsOnTheSameParabolaWithStepsThatChange)
 {
 	const Mesh     mesh   = rectangle(3, 3, 0.03, 0.03, 0.25, 3);
 	TriangleSystem system = makeSystem(mesh, Material(), GetParam()), start = system;
@@ -113,10 +122,13 @@ TEST_P(TriangleMotion, fallsOnTheSameParabolaWithStepsThatChange) // from rest h
 		if (i < 999) time += settings.dt;
 	}
 	const double end  = time + settings.dt, fall = 0.5 * end * (end + first);
-	for (const auto& [now, then] : { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
+	for (const auto& [now, then] :
+	     { std::pair(&system.motion.node, &start.motion.node), { &system.motion.core, &start.motion.core } })
 		for (std::size_t i = 0; i < now->size(); i++)
-			EXPECT_NEAR(now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-10 * 9e4 * fall);
-	EXPECT_NEAR(gained, kinetic, 2e-3 * kinetic); // the leapfrog's product differs from ½ m v² by the square of one step in a thousand, and that only once
+			EXPECT_NEAR(
+			        now->position[2 * i + 1], then->position[2 * i + 1] - 9e4 * fall, 1e-10 * 9e4 * fall);
+	// the leapfrog's product differs from ½ m v² by the square of one step in a thousand, and that only once
+	EXPECT_NEAR(gained, kinetic, 2e-3 * kinetic);
 }
 
 TEST_P(TriangleMotion, gainsTheImpulseOfForcesFromOutside)
@@ -155,7 +167,8 @@ TEST_P(TriangleMotion, blockedDegreesOfFreedomKeepTheirVelocity)
 		system.motion.spin.inverseInertia[4] = 0;
 		system.motion.spin.velocity[4]       = -30;
 	}
-	const double start = system.motion.node.position[6], core = system.motion.core.position[11], dt = 0.5 * criticalStep(mesh, Material(), GetParam());
+	const double start = system.motion.node.position[6], core = system.motion.core.position[11],
+	             dt = 0.5 * criticalStep(mesh, Material(), GetParam());
 	StepSettings settings = stepOf(dt);
 	settings.gravity      = { 9.81, -9.81 };
 	settings.damping      = 0.3;
@@ -170,7 +183,8 @@ TEST_P(TriangleMotion, blockedDegreesOfFreedomKeepTheirVelocity)
 	}
 }
 
-TEST_P(TriangleMotion, dampingIsThatOfNewtonIntegrator) // cundallDamp2nd: a (1 − d sign(a (v + a dt/2))); it slows a fall and hastens the end of a rise
+// cundallDamp2nd: a (1 − d sign(a (v + a dt/2))); it slows a fall and hastens the end of a rise
+TEST_P(TriangleMotion, dampingIsThatOfNewtonIntegrator)
 {
 	const double dt = 1e-7, g = -1e5, damping = 0.2;
 	const Mesh   mesh      = rectangle(2, 2, 0.02, 0.02, 0.25, 6);
@@ -200,7 +214,8 @@ TEST(CoreSpin, feelsMomentsFromOutside) // a moment on a core goes over to the w
 	run(system, settings, 500);
 	const Momentum now = momentumOf(system);
 	EXPECT_NEAR(now.angular, 3 * 500 * settings.dt, 1e-11 * (3 * 500 * settings.dt + now.angularSize));
-	EXPECT_GT(std::abs(now.angular), 100 * std::abs(system.motion.spin.inertia[7] * system.motion.spin.velocity[7]));
+	EXPECT_GT(
+	        std::abs(now.angular), 100 * std::abs(system.motion.spin.inertia[7] * system.motion.spin.velocity[7]));
 }
 
 /// A block that turns about its centre as a rigid body.
@@ -210,7 +225,8 @@ TriangleSystem spinningBlock(const Mesh& mesh, double size, double speed, double
 	for (Points* points : { &system.motion.node, &system.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++) {
 			// velocities live half a step before positions, on the chord of the circle
-			const double x = points->position[2 * i] - size / 2, y = points->position[2 * i + 1] - size / 2, angle = speed * dt;
+			const double x = points->position[2 * i] - size / 2, y = points->position[2 * i + 1] - size / 2,
+			             angle = speed * dt;
 			points->velocity[2 * i]     = (x * (1 - std::cos(angle)) - y * std::sin(angle)) / dt;
 			points->velocity[2 * i + 1] = (x * std::sin(angle) + y * (1 - std::cos(angle))) / dt;
 		}
@@ -236,14 +252,17 @@ TEST_P(TriangleMotion, rigidSpinThroughARadianAndAHalf)
 	}
 	for (const Points* points : { &start.motion.node, &start.motion.core })
 		for (std::size_t i = 0; i < points->size(); i++)
-			inertia += points->mass[i] * (std::pow(points->position[2 * i] - size / 2, 2) + std::pow(points->position[2 * i + 1] - size / 2, 2));
+			inertia += points->mass[i]
+			        * (std::pow(points->position[2 * i] - size / 2, 2)
+			           + std::pow(points->position[2 * i + 1] - size / 2, 2));
 	double meanTurn = 0;
 	for (std::size_t t = 0; t < system.triangles(); t++) {
 		EXPECT_NEAR(system.frameAngle(t), angle, 1e-4); // waves of the sudden centrifugal force
 		meanTurn += system.frameAngle(t) / double(system.triangles());
 	}
 	EXPECT_NEAR(meanTurn, angle, 1e-5);
-	// Only the physical centrifugal stress: virial theorem, the mean of ∫ tr σ dV is twice the kinetic energy, ω² ∫ ρ r² dV
+	// Only the physical centrifugal stress: virial theorem, the mean of ∫ tr σ dV is twice the kinetic energy,
+	// ω² ∫ ρ r² dV
 	EXPECT_NEAR(virial, speed * speed * inertia, 0.05 * speed * speed * inertia);
 }
 

@@ -22,14 +22,14 @@ struct Assembly {
 
 	Assembly(const Mesh& mesh, const std::vector<Material>& material, RotationTreatment rotation)
 	{
-		const auto                          nodes = Eigen::Index(mesh.node.size()), triangles = Eigen::Index(mesh.triangle.size());
+		const auto nodes = Eigen::Index(mesh.node.size()), triangles = Eigen::Index(mesh.triangle.size());
 		const auto                          unknowns = 2 * nodes + 3 * triangles;
 		std::vector<Eigen::Triplet<double>> entries;
 		mass = Eigen::VectorXd::Zero(unknowns);
 		for (Eigen::Index i = 0; i < triangles; i++) {
 			const Material&             m         = material[std::size_t(i) % material.size()];
 			const auto                  reference = makeReference(mesh.corners(std::size_t(i)));
-			const ElementMatrix         k         = elementStiffness(reference, m.stiffness(), m.thickness, rotation);
+			const ElementMatrix k = elementStiffness(reference, m.stiffness(), m.thickness, rotation);
 			const ElementVector         masses    = elementMass(m.mass(reference, rotation));
 			std::array<Eigen::Index, 9> place;
 			for (std::size_t e = 0; e < 3; e++)
@@ -41,10 +41,12 @@ struct Assembly {
 			for (int row = 0; row < 9; row++) {
 				mass[place[std::size_t(row)]] += masses[row];
 				for (int column = 0; column < 9; column++)
-					entries.emplace_back(place[std::size_t(row)], place[std::size_t(column)], k(row, column));
+					entries.emplace_back(
+					        place[std::size_t(row)], place[std::size_t(column)], k(row, column));
 			}
 		}
-		if (rotation != RotationTreatment::Cosserat) mass.tail(triangles).setOnes(); // no stiffness, no motion there
+		// no stiffness, no motion there
+		if (rotation != RotationTreatment::Cosserat) mass.tail(triangles).setOnes();
 		stiffness.resize(unknowns, unknowns);
 		stiffness.setFromTriplets(entries.begin(), entries.end());
 	}
@@ -55,7 +57,8 @@ struct Assembly {
 	}
 	double highestFrequency() const
 	{
-		const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(dynamic()), Eigen::EigenvaluesOnly);
+		const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+		        Eigen::MatrixXd(dynamic()), Eigen::EigenvaluesOnly);
 		return std::sqrt(solver.eigenvalues().maxCoeff());
 	}
 };
@@ -66,15 +69,20 @@ double bound(const Mesh& mesh, const std::vector<Material>& material, RotationTr
 	for (std::size_t i = 0; i < mesh.triangle.size(); i++) {
 		const Material& m         = material[i % material.size()];
 		const auto      reference = makeReference(mesh.corners(i));
-		highest                   = std::max(highest, highestFrequency(reference, m.stiffness(), m.thickness, m.mass(reference, rotation), rotation));
+		highest = std::max(
+		        highest,
+		        highestFrequency(reference, m.stiffness(), m.thickness, m.mass(reference, rotation), rotation));
 	}
 	return highest;
 }
 
-Eigen::VectorXd eigenvaluesPerMass(const TriangleReference<double>& reference, const Material& m, RotationTreatment rotation)
+Eigen::VectorXd
+eigenvaluesPerMass(const TriangleReference<double>& reference, const Material& m, RotationTreatment rotation)
 {
-	const ElementVector scale = elementMass(m.mass(reference, RotationTreatment::Cosserat)).cwiseInverse().cwiseSqrt();
-	const ElementMatrix k     = scale.asDiagonal() * elementStiffness(reference, m.stiffness(), m.thickness, rotation) * scale.asDiagonal();
+	const ElementVector scale
+	        = elementMass(m.mass(reference, RotationTreatment::Cosserat)).cwiseInverse().cwiseSqrt();
+	const ElementMatrix k = scale.asDiagonal() * elementStiffness(reference, m.stiffness(), m.thickness, rotation)
+	        * scale.asDiagonal();
 	return Eigen::SelfAdjointEigenSolver<ElementMatrix>(k, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
@@ -109,12 +117,14 @@ TEST(ElementStiffness, isSymmetric)
 	Random random(32);
 	for (int i = 0; i < 20; i++)
 		for (const auto rotation : allTreatments) {
-			const ElementMatrix k = elementStiffness(makeReference(random.skewedTriangle()), { 3, 2, 1.5 }, 0.4, rotation);
+			const ElementMatrix k = elementStiffness(
+			        makeReference(random.skewedTriangle()), { 3, 2, 1.5 }, 0.4, rotation);
 			EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * k.cwiseAbs().maxCoeff());
 		}
 }
 
-TEST(FrequencyBound, isAboveTheHighestFrequencyOfAnyMesh) // 48 skewed triangles, soft and stiff, light and heavy side by side
+// 48 skewed triangles, soft and stiff, light and heavy side by side
+TEST(FrequencyBound, isAboveTheHighestFrequencyOfAnyMesh)
 {
 	for (std::uint64_t seed = 1; seed <= 8; seed++)
 		for (const auto rotation : allTreatments) {
@@ -128,9 +138,11 @@ TEST(FrequencyBound, isAboveTheHighestFrequencyOfAnyMesh) // 48 skewed triangles
 				m.rotationStiffness = random.uniform(0, 4);
 				m.vertexShare       = random.uniform(0.05, 0.24);
 			}
-			const double global = Assembly(mesh, material, rotation).highestFrequency(), limit = bound(mesh, material, rotation);
+			const double global = Assembly(mesh, material, rotation).highestFrequency(),
+			             limit  = bound(mesh, material, rotation);
 			EXPECT_LE(global, limit * (1 + 1e-12)) << name(rotation) << ", seed " << seed;
-			EXPECT_GT(global, 0.2 * limit) << name(rotation) << ", seed " << seed; // such contrasts cost at most a factor of 5
+			// such contrasts cost at most a factor of 5
+			EXPECT_GT(global, 0.2 * limit) << name(rotation) << ", seed " << seed;
 		}
 }
 
@@ -152,7 +164,8 @@ TEST(FrequencyBound, holdsForSharesThatLeaveACoreNoInertia) // a quarter and mor
 		for (const double share : { 0.25, 0.5, 0.9 }) {
 			Material m;
 			m.vertexShare       = share;
-			const double global = Assembly(mesh, { m }, rotation).highestFrequency(), limit = bound(mesh, { m }, rotation);
+			const double global = Assembly(mesh, { m }, rotation).highestFrequency(),
+			             limit  = bound(mesh, { m }, rotation);
 			EXPECT_LE(global, limit * (1 + 1e-12)) << name(rotation) << ", share " << share;
 			EXPECT_GT(global, 0.7 * limit) << name(rotation) << ", share " << share;
 		}
@@ -162,7 +175,8 @@ TEST(FrequencyBound, isTightOnAMeshOfEqualTriangles) // it costs at most 10 % of
 {
 	for (const auto rotation : allTreatments) {
 		const Mesh   mesh   = rectangle(6, 6, 0.06, 0.06);
-		const double global = Assembly(mesh, { Material() }, rotation).highestFrequency(), limit = bound(mesh, { Material() }, rotation);
+		const double global = Assembly(mesh, { Material() }, rotation).highestFrequency(),
+		             limit  = bound(mesh, { Material() }, rotation);
 		EXPECT_GT(global, 0.9 * limit) << name(rotation);
 		EXPECT_LE(global, limit * (1 + 1e-12)) << name(rotation);
 	}
@@ -170,9 +184,11 @@ TEST(FrequencyBound, isTightOnAMeshOfEqualTriangles) // it costs at most 10 % of
 
 TEST(FrequencyBound, scalesWithSizeAndWaveSpeed) // ω ∝ √(E/ρ)/size, whatever the thickness
 {
-	const Vertices v = { { { 0, 0 }, { 2, 0.3 }, { 0.4, 1.1 } } }, twice = { { { 0, 0 }, { 4, 0.6 }, { 0.8, 2.2 } } };
+	const Vertices v     = { { { 0, 0 }, { 2, 0.3 }, { 0.4, 1.1 } } },
+	               twice = { { { 0, 0 }, { 4, 0.6 }, { 0.8, 2.2 } } };
 	for (const auto rotation : allTreatments) {
-		const auto   frequency = [&](const Vertices& x, const Material& m) { return bound(single(x), { m }, rotation); };
+		const auto frequency
+		        = [&](const Vertices& x, const Material& m) { return bound(single(x), { m }, rotation); };
 		const double once      = frequency(v, Material());
 		EXPECT_NEAR(frequency(twice, Material()), once / 2, 1e-12 * once);
 		EXPECT_NEAR(frequency(v, { 4 * 30e9, 4 * 26e9, 2, 2400, 1, 1. / 6 }), 2 * once, 1e-12 * once);
@@ -206,24 +222,31 @@ double globalStep(const Assembly& assembly)
 	return 2 / std::sqrt(solver.eigenvalues().maxCoeff());
 }
 
-TEST(GlobalStep, againstTheShareOfTheVertices) // numbers: independent numpy element, dense eigenvalues; concrete, 0.1 m × 0.2 m, cells of 10 mm, in µs
+// numbers: independent numpy element, dense eigenvalues; concrete, 0.1 m × 0.2 m, cells of 10 mm, in µs
+TEST(GlobalStep, againstTheShareOfTheVertices)
 {
 	const Mesh mesh = rectangle(10, 20, 0.1, 0.2);
 	struct Row {
 		double share, step;
 	};
-	for (const auto& [share, step] :
-	     { Row { 0.05, 0.2870 }, { 1. / 12, 0.3636 }, { 1. / 8, 0.4344 }, { 1. / 6, 0.4880 }, { 0.2, 0.5174 }, { 0.24, 0.2821 } }) {
+	for (const auto& [share, step] : { Row { 0.05, 0.2870 },
+	                                   { 1. / 12, 0.3636 },
+	                                   { 1. / 8, 0.4344 },
+	                                   { 1. / 6, 0.4880 },
+	                                   { 0.2, 0.5174 },
+	                                   { 0.24, 0.2821 } }) {
 		Material m;
 		m.vertexShare = share;
-		EXPECT_NEAR(globalStep(Assembly(mesh, { m }, RotationTreatment::Cosserat)) * 1e6, step, 0.6e-4) << "share " << share;
+		EXPECT_NEAR(globalStep(Assembly(mesh, { m }, RotationTreatment::Cosserat)) * 1e6, step, 0.6e-4)
+		        << "share " << share;
 	}
 	Material m; // without rotation the vertices may have more
 	m.vertexShare = 0.5;
 	EXPECT_NEAR(globalStep(Assembly(mesh, { m }, RotationTreatment::None)) * 1e6, 0.6481, 0.6e-4);
 }
 
-TEST(Statics, rotationStiffnessChangesNoStaticSolution) // no moment but its own acts on a core, so the core turns until ε_φ = 0
+// no moment but its own acts on a core, so the core turns until ε_φ = 0
+TEST(Statics, rotationStiffnessChangesNoStaticSolution)
 {
 	const Mesh      mesh  = rectangle(3, 4, 0.3, 0.4, 0.25, 7);
 	const auto      nodes = Eigen::Index(mesh.node.size()), triangles = Eigen::Index(mesh.triangle.size());
@@ -235,7 +258,8 @@ TEST(Statics, rotationStiffnessChangesNoStaticSolution) // no moment but its own
 		Material m;
 		m.rotationStiffness = rotationStiffness;
 		Eigen::MatrixXd matrix(Assembly(mesh, { m }, RotationTreatment::Cosserat).stiffness);
-		for (const Eigen::Index fixed : { Eigen::Index(0), Eigen::Index(1), Eigen::Index(3) }) // node 0 held, node 1 guided: no rigid motion
+		// node 0 held, node 1 guided: no rigid motion
+		for (const Eigen::Index fixed : { Eigen::Index(0), Eigen::Index(1), Eigen::Index(3) })
 			matrix(fixed, fixed) *= 1e12;
 		return Eigen::VectorXd(matrix.partialPivLu().solve(load));
 	};
@@ -243,7 +267,8 @@ TEST(Statics, rotationStiffnessChangesNoStaticSolution) // no moment but its own
 	EXPECT_LT((weak - strong).cwiseAbs().maxCoeff(), 1e-8 * strong.cwiseAbs().maxCoeff());
 }
 
-TEST(Statics, coreTurnsByTheMeanTurnOfItsVertices) // patch test of the pseudo-Cosserat medium: vertices held at a homogeneous strain, core free
+// patch test of the pseudo-Cosserat medium: vertices held at a homogeneous strain, core free
+TEST(Statics, coreTurnsByTheMeanTurnOfItsVertices)
 {
 	Random random(36);
 	for (int i = 0; i < 200; i++) {
@@ -261,17 +286,20 @@ TEST(Statics, coreTurnsByTheMeanTurnOfItsVertices) // patch test of the pseudo-C
 		}
 		Eigen::Vector3d units(1, 1, 1 / size);
 		Eigen::Matrix3d core = units.asDiagonal() * k.bottomRightCorner<3, 3>() * units.asDiagonal();
-		u.tail<3>()          = -units.cwiseProduct(Eigen::Vector3d(core.fullPivLu().solve(units.cwiseProduct(Eigen::Vector3d((k * u).tail<3>())))));
+		u.tail<3>() = -units.cwiseProduct(Eigen::Vector3d(
+		        core.fullPivLu().solve(units.cwiseProduct(Eigen::Vector3d((k * u).tail<3>())))));
 		EXPECT_NEAR(u[6], 0, 1e-12 * size);
 		EXPECT_NEAR(u[7], 0, 1e-12 * size);
 		EXPECT_NEAR(u[8], turn, 1e-12);
 		// and then the forces on the vertices are those without rotation stiffness
 		const ElementMatrix plain = elementStiffness(reference, { 30, 26, 0 }, 1, RotationTreatment::Cosserat);
-		EXPECT_LT(((k - plain) * u).head<6>().cwiseAbs().maxCoeff(), 1e-12 * (plain * u).head<6>().cwiseAbs().maxCoeff());
+		EXPECT_LT(
+		        ((k - plain) * u).head<6>().cwiseAbs().maxCoeff(),
+		        1e-12 * (plain * u).head<6>().cwiseAbs().maxCoeff());
 	}
 }
 
-// ---- in a deformed shape ---------------------------------------------------------------------------------------------------------------------------------
+// ---- in a deformed shape --------------------------------------------------------------------------------------------
 
 /// Displacement gradient without rotation, so that every frame stays where it is; stretches between 0.4 and 4.
 struct Stretch {
@@ -290,7 +318,8 @@ struct Stretch {
 
 Stretch randomStretch(Random& random)
 {
-	const double first = std::exp(random.uniform(std::log(0.4), std::log(4.))), second = std::exp(random.uniform(std::log(0.4), std::log(4.)));
+	const double first  = std::exp(random.uniform(std::log(0.4), std::log(4.))),
+	             second = std::exp(random.uniform(std::log(0.4), std::log(4.)));
 	const double angle = random.uniform(0, M_PI), c = std::cos(angle), s = std::sin(angle);
 	return { first * c * c + second * s * s - 1, first * s * s + second * c * c - 1, (first - second) * c * s };
 }
@@ -305,7 +334,8 @@ Eigen::VectorXd frequenciesSquared(const ElementMatrix& stiffness, const LumpedM
 
 /// ∂Δu/∂(unknowns) in the present shape, by central differences of what the element loops do.
 template <class Frame>
-Eigen::Matrix<double, 6, 9> relativeDisplacementGradient(const TriangleReference<double>& reference, const RelativeDisplacements<double>& du)
+Eigen::Matrix<double, 6, 9>
+relativeDisplacementGradient(const TriangleReference<double>& reference, const RelativeDisplacements<double>& du)
 {
 	const double size = std::sqrt(reference.area());
 	const auto   at   = [&](int unknown, double change) {
@@ -324,8 +354,9 @@ Eigen::Matrix<double, 6, 9> relativeDisplacementGradient(const TriangleReference
                 const auto                  frame = Frame::rotation(reference, fromCentre, angle);
                 Eigen::Matrix<double, 6, 1> result;
                 for (int e = 0; e < 3; e++) {
-                        const Point own  = relativeDisplacement(frame, fromCentre[std::size_t(e)], reference.arm[std::size_t(e)]);
-                        result[2 * e]     = own.x;
+			const Point own = relativeDisplacement(
+			        frame, fromCentre[std::size_t(e)], reference.arm[std::size_t(e)]);
+			result[2 * e]     = own.x;
                         result[2 * e + 1] = own.y;
                 }
                 return result;
@@ -337,7 +368,8 @@ Eigen::Matrix<double, 6, 9> relativeDisplacementGradient(const TriangleReference
 	return gradient;
 }
 
-TEST(DeformedStiffness, isTheSecondDerivativeOfTheEnergy) // Hessian in Δu between the derivatives of Δu: all but the geometric part
+// Hessian in Δu between the derivatives of Δu: all but the geometric part
+TEST(DeformedStiffness, isTheSecondDerivativeOfTheEnergy)
 {
 	Random random(41);
 	for (int i = 0; i < 50; i++)
@@ -345,17 +377,24 @@ TEST(DeformedStiffness, isTheSecondDerivativeOfTheEnergy) // Hessian in Δu betw
 			const auto          reference = makeReference(random.skewedTriangle());
 			const Material      material;
 			const auto          du   = randomStretch(random).of(reference);
-			const auto          plain = rotation == RotationTreatment::Cosserat ? rotation : RotationTreatment::None;
+			const auto plain = rotation == RotationTreatment::Cosserat ? rotation : RotationTreatment::None;
 			// at rest, of the vertices alone: Δu_e = u_e
-			const Eigen::Matrix<double, 6, 6> hessian = elementStiffness(reference, material.stiffness(), material.thickness, plain).topLeftCorner<6, 6>();
-			const auto gradient = rotation == RotationTreatment::None ? relativeDisplacementGradient<FrameNone>(reference, du)
-			        : rotation == RotationTreatment::Corotational     ? relativeDisplacementGradient<FrameCorotational>(reference, du)
-			                                                          : relativeDisplacementGradient<FrameCosserat>(reference, du);
+			const Eigen::Matrix<double, 6, 6> hessian
+			        = elementStiffness(reference, material.stiffness(), material.thickness, plain)
+			                  .topLeftCorner<6, 6>();
+			const auto gradient = rotation == RotationTreatment::None
+			        ? relativeDisplacementGradient<FrameNone>(reference, du)
+			        : rotation == RotationTreatment::Corotational
+			        ? relativeDisplacementGradient<FrameCorotational>(reference, du)
+			        : relativeDisplacementGradient<FrameCosserat>(reference, du);
 			const ElementMatrix   expected = gradient.transpose() * hessian * gradient;
 			const LumpedMass      mass     = material.mass(reference, rotation);
-			const Eigen::VectorXd here     = frequenciesSquared(elementStiffness(reference, material.stiffness(), material.thickness, rotation, du), mass, rotation);
+			const Eigen::VectorXd here = frequenciesSquared(
+			        elementStiffness(reference, material.stiffness(), material.thickness, rotation, du),
+			        mass, rotation);
 			const Eigen::VectorXd there    = frequenciesSquared(expected, mass, rotation);
-			EXPECT_LT((here - there).cwiseAbs().maxCoeff(), 1e-8 * there[8]) << name(rotation); // differences are exact to h² = 1e-10
+			// differences are exact to h² = 1e-10
+			EXPECT_LT((here - there).cwiseAbs().maxCoeff(), 1e-8 * there[8]) << name(rotation);
 		}
 }
 
@@ -369,24 +408,34 @@ TEST(FrequencyGrowth, isNeverLessThanWhatTheFrequencyGrowsBy)
 			const Material   material;
 			const LumpedMass mass = material.mass(reference, rotation);
 			const auto       du   = randomStretch(random).of(reference);
-			const auto       own  = [&](const RelativeDisplacements<double>& shape) {
-                                return highestFrequency(reference, material.stiffness(), material.thickness, mass, rotation, shape);
+			const auto own = [&](const RelativeDisplacements<double>& shape) {
+				return highestFrequency(
+				        reference, material.stiffness(), material.thickness, mass, rotation, shape);
 			};
-			const double rest = own({}), now = own(du), growth = frequencyGrowth(reference, material.stiffness(), material.thickness, mass, rotation, du);
+			const double rest = own({}), now = own(du),
+			             growth = frequencyGrowth(
+			                     reference, material.stiffness(), material.thickness, mass, rotation, du);
 			EXPECT_LE(now, (rest + growth) * (1 + 1e-12)) << name(rotation);
 			double& best = closest[rotation == RotationTreatment::Cosserat];
 			best         = std::max(best, now / (rest + growth));
 		}
 	EXPECT_GT(closest[0], 0.7); // and is not just large
 	EXPECT_GT(closest[1], 0.7);
-	EXPECT_EQ(frequencyGrowth(makeReference({ { { 0, 0 }, { 2, 0 }, { 0, 1 } } }), { 3, 2, 1 }, 1, { 1, 1, 1 }, RotationTreatment::Cosserat, {}), 0);
+	EXPECT_EQ(
+	        frequencyGrowth(
+	                makeReference({ { { 0, 0 }, { 2, 0 }, { 0, 1 } } }), { 3, 2, 1 }, 1, { 1, 1, 1 },
+	                RotationTreatment::Cosserat, {}),
+	        0);
 }
 
-/// A free triangle of flawless concrete that has flowed into another shape, so that it is free of stress there; it trembles a little.
-TriangleSystem stretchedTriangle(const Vertices& corners, const Material& material, const Stretch& stretch, RotationTreatment rotation)
+/// A free triangle of flawless concrete that has flowed into another shape, so that it is free of stress there;
+/// it trembles a little.
+TriangleSystem
+stretchedTriangle(const Vertices& corners, const Material& material, const Stretch& stretch, RotationTreatment rotation)
 {
 	TriangleSystem system = makeSystem(single(corners), material, rotation);
-	setGroups<ConcreteDamage>(system, material, ConcreteParameters(), ConcreteEffects::Damage, { 1 }); // undamaged, but it may have flowed
+	// undamaged, but it may have flowed
+	setGroups<ConcreteDamage>(system, material, ConcreteParameters(), ConcreteEffects::Damage, { 1 });
 	const RelativeDisplacements<double> du = stretch.of(system.topology.reference(0));
 	for (std::size_t e = 0; e < 3; e++) {
 		const auto v = std::size_t(system.topology.vertex[e][0]);
@@ -424,11 +473,13 @@ TEST(StableStepOfASystem, isSharpForAStretchedTriangle) // leapfrog in the kerne
 		Material material;
 		material.rotationStiffness          = rotationStiffness;
 		const auto                reference = makeReference(corners);
-		const std::vector<double> rest { highestFrequency(reference, material.stiffness(), 1, material.mass(reference, rotation), rotation) };
+		const std::vector<double> rest { highestFrequency(
+			reference, material.stiffness(), 1, material.mass(reference, rotation), rotation) };
 		const TriangleSystem      system = stretchedTriangle(corners, material, stretch, rotation);
 		const double              step   = stableStep(system, rest, material.vertexShare).step;
 		EXPECT_LT(loudestAfter(3000, system, 0.99 * step), 1e-6) << name(rotation) << ", " << stretch.xx;
-		EXPECT_GT(loudestAfter(100, system, 1.01 * step), 1e-3) << name(rotation) << ", " << stretch.xx; // exp(2 acosh 1.01) = 1.33 in a step
+		// exp(2 acosh 1.01) = 1.33 in a step
+		EXPECT_GT(loudestAfter(100, system, 1.01 * step), 1e-3) << name(rotation) << ", " << stretch.xx;
 		if (stretch.xx == 3) {
 			EXPECT_LT(step, 0.75 * 2 / rest[0]); // the bound at rest would not have done
 		}
@@ -443,12 +494,15 @@ TEST(StableStepOfASystem, atRestIsThatOfItsStiffestTriangle)
 		TriangleSystem      system = makeSystem(mesh, material, rotation);
 		std::vector<double> rest;
 		for (std::size_t i = 0; i < system.triangles(); i++)
-			rest.push_back(highestFrequency(system.topology.reference(i), material.stiffness(), material.thickness, material.mass(system.topology.reference(i), rotation), rotation));
+			rest.push_back(highestFrequency(
+			        system.topology.reference(i), material.stiffness(), material.thickness,
+			        material.mass(system.topology.reference(i), rotation), rotation));
 		const auto   found   = stableStep(system, rest, material.vertexShare);
 		const auto   stiffest = std::max_element(rest.begin(), rest.end());
 		EXPECT_NEAR(found.step, 2 / *stiffest, 1e-12 * found.step);
 		EXPECT_EQ(found.triangle, std::size_t(stiffest - rest.begin()));
-		EXPECT_GE(stableStep(system, rest, material.vertexShare, 0.5 * found.step).step, 0.5 * found.step); // nothing to find below
+		// nothing to find below
+		EXPECT_GE(stableStep(system, rest, material.vertexShare, 0.5 * found.step).step, 0.5 * found.step);
 	}
 }
 
@@ -464,7 +518,12 @@ TEST(StableStepOfASystem, findsTheOneStretchedTriangleAmongMany)
 		const auto reference = system.topology.reference(i);
 		const auto mass      = material.mass(reference, RotationTreatment::Cosserat);
 		rest.push_back(highestFrequency(reference, material.stiffness(), 1, mass, RotationTreatment::Cosserat));
-		expected = std::min(expected, 2 / highestFrequency(reference, material.stiffness(), 1, mass, RotationTreatment::Cosserat, system.relativeDisplacements(i)));
+		expected = std::min(
+		        expected,
+		        2
+		                / highestFrequency(
+		                        reference, material.stiffness(), 1, mass, RotationTreatment::Cosserat,
+		                        system.relativeDisplacements(i)));
 	}
 	const auto found = stableStep(system, rest, material.vertexShare);
 	EXPECT_NEAR(found.step, expected, 1e-12 * expected);

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// Strain of the sub-elements and rotation strain: patch test, rigid motion, objectivity (Zubelewicz 2018, eqs. 1–2, 9–14).
+// Strain of the sub-elements and rotation strain: patch test, rigid motion, objectivity
+// (Zubelewicz 2018, eqs. 1–2, 9–14).
 #include "../TriangleSamples.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ struct Gradient { ///< of a linear displacement field
 
 	static Gradient random(Random& random, double size)
 	{
-		return { random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size) };
+		return { random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size),
+			 random.uniform(-size, size) };
 	}
 	Point                 operator*(const Point& a) const { return { xx * a.x + xy * a.y, yx * a.x + yy * a.y }; }
 	InPlaneTensor<double> strain() const { return { xx, yy, 0.5 * (xy + yx) }; }
@@ -30,7 +32,8 @@ PlaneRotation<double> turn(double angle) { return { std::cos(angle), std::sin(an
 
 /// What an element makes of given positions, by the frame's own rotation.
 template <class Frame>
-RelativeDisplacements<double> displacements(const TriangleReference<double>& reference, const Vertices& x, const Point& core, double angle)
+RelativeDisplacements<double>
+displacements(const TriangleReference<double>& reference, const Vertices& x, const Point& core, double angle)
 {
 	const RelativeDisplacements<double> fromCentre = { x[0] - core, x[1] - core, x[2] - core };
 	const PlaneRotation<double>              frame      = Frame::rotation(reference, fromCentre, angle);
@@ -67,7 +70,8 @@ TEST(TriangleStrain, linearFieldGivesItsStrainInAllSubElements) // patch test
 	}
 }
 
-TEST(TriangleStrain, subElementSeesOnlyItsTwoVertices) // the third vertex moves: the opposite sub-element stays unstrained
+// the third vertex moves: the opposite sub-element stays unstrained
+TEST(TriangleStrain, subElementSeesOnlyItsTwoVertices)
 {
 	Random random(3);
 	for (std::size_t e = 0; e < 3; e++) {
@@ -90,7 +94,8 @@ template <class Frame> void expectObjective(std::uint64_t seed)
 		const double   angle     = random.uniform(-10, 10);
 		const auto     R         = turn(angle);
 		const Gradient stretch   = Gradient::random(random, 0.2).symmetric();
-		const double   size      = std::hypot(reference.arm[0].x, reference.arm[0].y) + std::hypot(reference.arm[1].x, reference.arm[1].y);
+		const double   size      = std::hypot(reference.arm[0].x, reference.arm[0].y)
+		        + std::hypot(reference.arm[1].x, reference.arm[1].y);
 		const Point    core      = random.point(size);
 		Vertices       rigid, stretched;
 		for (std::size_t e = 0; e < 3; e++) {
@@ -102,7 +107,8 @@ template <class Frame> void expectObjective(std::uint64_t seed)
 		for (const auto& strain : subElementStrains(reference, still))
 			EXPECT_LT(difference(strain, { 0, 0, 0 }), 1e-13);
 		EXPECT_NEAR(rotationStrain(reference, still), 0, 1e-13);
-		for (const auto& strain : subElementStrains(reference, displacements<Frame>(reference, stretched, core, angle)))
+		for (const auto& strain :
+		     subElementStrains(reference, displacements<Frame>(reference, stretched, core, angle)))
 			EXPECT_LT(difference(strain, stretch.strain()), 1e-13);
 	}
 }
@@ -115,7 +121,9 @@ TEST(TriangleStrain, corotationalFrameIgnoresTheCore) // its rotation follows th
 	Random         random(6);
 	const auto     reference = makeReference(random.skewedTriangle());
 	const Vertices v         = { { { 0.3, 0.1 }, { 2, 0.4 }, { 0.6, 1.7 } } };
-	const auto     frame     = [&](const Point& core) { return FrameCorotational::rotation(reference, { v[0] - core, v[1] - core, v[2] - core }, 0.); };
+	const auto frame = [&](const Point& core) {
+		return FrameCorotational::rotation(reference, { v[0] - core, v[1] - core, v[2] - core }, 0.);
+	};
 	const auto     first = frame({ 0, 0 }), second = frame({ 3, -2 });
 	EXPECT_NEAR(first.c, second.c, 1e-14);
 	EXPECT_NEAR(first.s, second.s, 1e-14);
@@ -141,7 +149,9 @@ TEST(RotationStrain, ofAHomogeneousStrainIsTheMeanTurnOfTheThreeArms)
 	for (int i = 0; i < 1000; i++) {
 		const auto     reference = makeReference(random.skewedTriangle());
 		const Gradient strain    = Gradient::random(random, 0.01).symmetric();
-		EXPECT_NEAR(rotationStrain(reference, linearField(reference, strain)), meanTurnOfVertices(reference, strain.strain()), 1e-16);
+		EXPECT_NEAR(
+		        rotationStrain(reference, linearField(reference, strain)),
+		        meanTurnOfVertices(reference, strain.strain()), 1e-16);
 	}
 }
 
@@ -158,7 +168,8 @@ TEST(RotationStrain, ofAHomogeneousStrainVanishesInEquilateralTrianglesOnly)
 	const Vertices right       = { { { 0, 0 }, { 2, 0 }, { 0, 1 } } };
 	for (int i = 0; i < 100; i++)
 		EXPECT_NEAR(rotationOf(equilateral, Gradient::random(random, 1).symmetric()), 0, 1e-15);
-	EXPECT_NEAR(rotationOf(isosceles, stretch), 0, 1e-15); // strain along the axis of symmetry turns left and right alike
+	// strain along the axis of symmetry turns left and right alike
+	EXPECT_NEAR(rotationOf(isosceles, stretch), 0, 1e-15);
 	EXPECT_GT(std::abs(rotationOf(isosceles, shear)), 0.1);
 	EXPECT_GT(std::abs(rotationOf(right, stretch)), 0.1);
 	EXPECT_GT(std::abs(rotationOf(right, shear)), 0.1);

@@ -13,7 +13,8 @@ namespace {
 	{
 		if (std::isfinite(value) && value > 0) return;
 		std::ostringstream message;
-		message << name << " must be a positive number of pascals, got " << value << " Pa; concrete has about 30e9 Pa, steel 2e11 Pa.";
+		message << name << " must be a positive number of pascals, got " << value
+		        << " Pa; concrete has about 30e9 Pa, steel 2e11 Pa.";
 		throw std::invalid_argument(message.str());
 	}
 }
@@ -24,7 +25,8 @@ ElasticModuli ElasticModuli::fromYoung(double young, double poisson)
 	if (!(poisson > -1 && poisson < 0.5)) {
 		std::ostringstream message;
 		message << "Poisson's ratio must lie between -1 and 0.5, got " << poisson
-		        << " [-]; at 0.5 the bulk modulus is infinite: use at most 0.499, or give bulk and shear modulus.";
+		        << " [-]; at 0.5 the bulk modulus is infinite: use at most 0.499, or give bulk and shear "
+		           "modulus.";
 		throw std::invalid_argument(message.str());
 	}
 	const ElasticModuli moduli { young / (3 * (1 - 2 * poisson)), young / (2 * (1 + poisson)) };
@@ -38,8 +40,10 @@ void ElasticModuli::validate() const
 	requirePositive(shear, "shear modulus");
 	if (bulk > largestBulkToShear * shear) {
 		std::ostringstream message;
-		message << "bulk modulus " << bulk << " Pa is " << bulk / shear << " times the shear modulus " << shear << " Pa (Poisson's ratio " << poisson()
-		        << "): the material is incompressible for all purposes and its stable time step goes to zero; keep the ratio below "
+		message << "bulk modulus " << bulk << " Pa is " << bulk / shear << " times the shear modulus " << shear
+		        << " Pa (Poisson's ratio " << poisson()
+		        << "): the material is incompressible for all purposes and its stable time step goes to zero; "
+		           "keep the ratio below "
 		        << largestBulkToShear << ".";
 		throw std::invalid_argument(message.str());
 	}

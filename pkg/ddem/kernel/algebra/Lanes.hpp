@@ -27,15 +27,22 @@ template <> struct Lanes<double> {
 		to[1] = value.y;
 	}
 	/// Points of the given indices.
-	static PlaneVector<double> gatherPoints(const double* from, const std::int32_t* index) { return loadPoints(from + 2 * std::ptrdiff_t(*index)); }
+	static PlaneVector<double> gatherPoints(const double* from, const std::int32_t* index)
+	{
+		return loadPoints(from + 2 * std::ptrdiff_t(*index));
+	}
 	/// Four numbers of each of the given rows, which are `stride` numbers apart.
-	static void gatherRows(const double* from, std::ptrdiff_t stride, const std::int32_t* index, double (&to)[4]) { std::copy_n(from + stride * *index, 4, to); }
+	static void gatherRows(const double* from, std::ptrdiff_t stride, const std::int32_t* index, double (&to)[4])
+	{
+		std::copy_n(from + stride * *index, 4, to);
+	}
 	/// Four numbers of each of successive rows.
 	static void storeRows(double* to, std::ptrdiff_t, const double (&from)[4]) { std::copy_n(from, 4, to); }
 };
 
 #if defined(__AVX2__)
-/// Four lanes. Points are loaded whole, two coordinates at once, and transposed in registers: faster than gather instructions or single loads.
+/// Four lanes. Points are loaded whole, two coordinates at once, and transposed in registers:
+/// faster than gather instructions or single loads.
 template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
 	using Batch                        = xsimd::batch<double, Arch>;
 	static constexpr std::size_t width = 4;
@@ -77,7 +84,8 @@ template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
 private:
 	static void transpose(Batch (&m)[4])
 	{
-		const __m256d a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]), c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
+		const __m256d a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]),
+		              c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
 		m[0] = Batch(_mm256_permute2f128_pd(a, c, 0x20));
 		m[1] = Batch(_mm256_permute2f128_pd(b, d, 0x20));
 		m[2] = Batch(_mm256_permute2f128_pd(a, c, 0x31));
@@ -85,7 +93,10 @@ private:
 	}
 
 	/// From points 0, 2 and points 1, 3.
-	static PlaneVector<Batch> split(__m256d even, __m256d odd) { return { Batch(_mm256_unpacklo_pd(even, odd)), Batch(_mm256_unpackhi_pd(even, odd)) }; }
+	static PlaneVector<Batch> split(__m256d even, __m256d odd)
+	{
+		return { Batch(_mm256_unpacklo_pd(even, odd)), Batch(_mm256_unpackhi_pd(even, odd)) };
+	}
 };
 #else
 /// Lanes of the instructions that every processor of the architecture has, one after the other.

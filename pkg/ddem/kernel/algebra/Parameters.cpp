@@ -26,8 +26,8 @@ void checkParameters(const char* law, const std::vector<ParameterEntry>& entries
 		if (p.bounds.allow(value)) continue;
 		std::ostringstream message;
 		const std::string  unit = p.unit == std::string("-") ? "[-]" : p.unit;
-		message << law << ": " << p.name << " = " << value << " " << unit << " is not allowed; it must be " << p.bounds.words()
-		        << ". " << p.wayOut;
+		message << law << ": " << p.name << " = " << value << " " << unit << " is not allowed; it must be "
+		        << p.bounds.words() << ". " << p.wayOut;
 		throw std::invalid_argument(message.str());
 	}
 }

@@ -35,7 +35,8 @@ constexpr Bounds above(double least) { return { least, unbounded, false, true };
 constexpr Bounds atLeast(double least) { return { least, unbounded, true, true }; }
 constexpr Bounds between(double least, double most) { return { least, most, true, true }; }           ///< ends included
 constexpr Bounds strictlyBetween(double least, double most) { return { least, most, false, false }; } ///< ends excluded
-constexpr Bounds fromBelow(double least, double most) { return { least, most, true, false }; }        ///< least included
+/// least included
+constexpr Bounds fromBelow(double least, double most) { return { least, most, true, false }; }
 
 /// What is known of a parameter.
 struct ParameterEntry {
@@ -67,13 +68,14 @@ void checkParameters(const char* law, const std::vector<ParameterEntry>& entries
 #define DDEM_ENTRIES(Class, Base, LIST) \
 	static const std::vector<ParameterEntry>& entries() \
 	{ \
-		using Self                = Class; \
-		static const auto  sample = Self(); \
+		using Self = Class; \
+		static const auto sample = Self(); \
 		const auto offsetOf = [](double Self::*member) { \
-			return std::size_t(reinterpret_cast<const char*>(&(sample.*member)) - reinterpret_cast<const char*>(&sample)); \
+			return std::size_t( \
+			        reinterpret_cast<const char*>(&(sample.*member)) \
+			        - reinterpret_cast<const char*>(&sample)); \
 		}; \
-		static const std::vector<ParameterEntry> all \
-		        = joined(Base::entries(), { LIST(DDEM_ENTRY) }, &sample); \
+		static const std::vector<ParameterEntry> all = joined(Base::entries(), { LIST(DDEM_ENTRY) }, &sample); \
 		return all; \
 	}
 
@@ -83,8 +85,10 @@ joined(const std::vector<ParameterEntry>& base, const std::vector<ParameterEntry
 
 /// Parameters that every law of a deformable triangle has.
 #define ELASTIC_PARAMETERS(P) \
-	P(bulk, 30e9, "Pa", above(0), "Concrete has about 30e9 Pa, steel 1.6e11 Pa.", "Bulk modulus B at zero pressure.") \
-	P(shear, 26e9, "Pa", above(0), "Concrete has about 26e9 Pa, steel 8e10 Pa.", "Shear modulus μ at zero pressure.") \
+	P(bulk, 30e9, "Pa", above(0), "Concrete has about 30e9 Pa, steel 1.6e11 Pa.", \
+	  "Bulk modulus B at zero pressure.") \
+	P(shear, 26e9, "Pa", above(0), "Concrete has about 26e9 Pa, steel 8e10 Pa.", \
+	  "Shear modulus μ at zero pressure.") \
 	P(rotationStiffness, 2, "-", atLeast(0), "0 leaves rotations free, Zubelewicz (2018) uses 2.", \
 	  "Stiffness β_φ of the rotation strain, as a multiple of the shear modulus.") \
 	P(density, 2400, "kg/m³", above(0), "Concrete has about 2400 kg/m³.", "Mass density ρ.")

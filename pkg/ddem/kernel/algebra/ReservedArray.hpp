@@ -12,8 +12,8 @@
 
 namespace yade::ddem {
 
-/** Array of plain numbers with address space for `capacity` of them. Pages become resident when they are first written, so room that
- * is not used costs nothing, and views of the array stay valid while it grows. */
+/** Array of plain numbers with address space for `capacity` of them. Pages become resident when they are first
+ * written, so room that is not used costs nothing, and views of the array stay valid while it grows. */
 template <class T> class ReservedArray {
 public:
 	ReservedArray() = default;
@@ -39,8 +39,9 @@ public:
 	{
 		release();
 		if (capacity == 0) return;
-		void* const space = mmap(
-		        nullptr, capacity * sizeof(T), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+		void* const space
+		        = mmap(nullptr, capacity * sizeof(T), PROT_READ | PROT_WRITE,
+		               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
 		if (space == MAP_FAILED) throw std::bad_alloc();
 		numbers = static_cast<T*>(space);
 		room    = capacity;

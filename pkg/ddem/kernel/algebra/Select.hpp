@@ -4,7 +4,8 @@
 
 namespace yade::ddem {
 
-// Always inline: this header is compiled with different instruction sets, and the linker keeps one copy of a function that is not inlined.
+// Always inline: this header is compiled with different instruction sets, and the linker keeps one copy of a function
+// that is not inlined.
 [[gnu::always_inline]] inline double select(bool condition, double yes, double no) { return condition ? yes : no; }
 [[gnu::always_inline]] inline bool   any(bool condition) { return condition; }
 

@@ -60,7 +60,8 @@ struct ConcreteDamage : LawDefaults {
 	}
 
 	template <class Number> struct Properties {
-		Number fractureEnergy, bandFactor; ///< G_f [J/m³], and what a crack band multiplies it with once flow has localised [-]
+		Number fractureEnergy, bandFactor; ///< G_f [J/m³], and what a crack band multiplies it with
+		                                   ///< once flow has localised [-]
 	};
 	template <unsigned effects, class P, class Visit> static void properties(P& own, Visit&& visit)
 	{
@@ -71,7 +72,8 @@ struct ConcreteDamage : LawDefaults {
 	}
 	static Properties<double> propertiesOf(const Prepared& law, const TriangleProperties& triangle)
 	{
-		return { triangle.fractureEnergy > 0 ? triangle.fractureEnergy : law.parameters.fractureEnergy, triangle.bandFactor };
+		return { triangle.fractureEnergy > 0 ? triangle.fractureEnergy : law.parameters.fractureEnergy,
+			 triangle.bandFactor };
 	}
 	static State<double> virgin(const Prepared&, const TriangleProperties& triangle)
 	{
@@ -130,7 +132,8 @@ struct ConcreteDamage : LawDefaults {
 	}
 	/// The book begins where the law was last evaluated: the stress of then, which the book needs; and the strain,
 	/// where only the book does.
-	template <unsigned effects> static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)
+	template <unsigned effects>
+	static void openBook(const Prepared& law, const PlaneTensor& strain, State<double>& s)
 	{
 		if constexpr (!(effects & (ConcreteEffects::Flow | ConcreteEffects::Damage))) s.strain = strain;
 		s.lastStrain = s.strain;
@@ -160,7 +163,10 @@ struct ConcreteDamage : LawDefaults {
 			 s.plasticDissipation,
 			 s.damageDissipation };
 	}
-	static double damage(const Prepared& law, const Properties<double>&, const State<double>& s) { return damageRatio(law, s); }
+	static double damage(const Prepared& law, const Properties<double>&, const State<double>& s)
+	{
+		return damageRatio(law, s);
+	}
 	static double stiffening(const Prepared& law, const State<double>& s) { return stiffnessFactor(law, s); }
 };
 

@@ -72,8 +72,8 @@ inline void storeForces(
 	if constexpr (Frame::coreRotates) L::store(a.coreMoment + i, force.moment);
 }
 
-/** The last triangles of a group, fewer than a batch, filled up with copies of the last one. They go through the instructions of every
- * other batch, so that a triangle's forces have the same bits at any place. */
+/** The last triangles of a group, fewer than a batch, filled up with copies of the last one. They go through the
+ * instructions of every other batch, so that a triangle's forces have the same bits at any place. */
 class FilledBatch {
 public:
 	/// \param count rows from `first` on that are real, at least 1 and at most widestBatch.

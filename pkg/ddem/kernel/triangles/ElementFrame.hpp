@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
-// The frame in which an element measures its strain: three ways to treat rotation, each a type of its own so that a scene pays only for what it picks.
+// The frame in which an element measures its strain: three ways to treat rotation, each a type of its own so that
+// a scene pays only for what it picks.
 #pragma once
 
 #include <pkg/ddem/kernel/triangles/TriangleElement.hpp>
@@ -11,13 +12,16 @@ namespace yade::ddem {
 
 /// How elements follow rotation.
 enum class RotationTreatment {
-	None,         ///< R = 1: small rotations, cheapest; angular momentum balances to first order in the rotation only
-	Corotational, ///< R from the polar decomposition of the vertices' mean deformation gradient; the core does not rotate by itself
+	None,         ///< R = 1: small rotations, cheapest;
+	              ///< angular momentum balances to first order in the rotation only
+	Corotational, ///< R from the polar decomposition of the vertices' mean deformation gradient;
+	              ///< the core does not rotate by itself
 	Cosserat      ///< R is the rotation of the core, a degree of freedom with inertia, tied to the vertices by β_φ
 };
 
-/** Mean deformation gradient of the three vertices, reduced to what the rotation needs: a = F_xx + F_yy, b = F_yx − F_xy; tan θ = b/a.
- * In two dimensions the polar rotation has this closed form, and ∂θ/∂x_e follows from it.
+/** Mean deformation gradient of the three vertices, reduced to what the rotation needs: a = F_xx + F_yy,
+ * b = F_yx − F_xy; tan θ = b/a. In two dimensions the polar rotation has this closed form,
+ * and ∂θ/∂x_e follows from it.
  */
 template <class Number> struct MeanRotation {
 	Number a, b;
@@ -64,7 +68,9 @@ template <class Number> inline std::pair<Number, Number> sincos(const Number& an
 
 struct FrameNone {
 	static constexpr bool                           coreRotates = false;
-	template <class Number> static PlaneRotation<Number> rotation(const TriangleReference<Number>&, const RelativeDisplacements<Number>&, const Number&)
+	template <class Number>
+	static PlaneRotation<Number>
+	rotation(const TriangleReference<Number>&, const RelativeDisplacements<Number>&, const Number&)
 	{
 		return { Number(1), Number(0) };
 	}
@@ -83,15 +89,18 @@ struct FrameNone {
 struct FrameCorotational {
 	static constexpr bool coreRotates = false;
 	template <class Number>
-	static PlaneRotation<Number> rotation(const TriangleReference<Number>& reference, const RelativeDisplacements<Number>& fromCentre, const Number&)
+	static PlaneRotation<Number> rotation(
+	        const TriangleReference<Number>& reference, const RelativeDisplacements<Number>& fromCentre,
+	        const Number&)
 	{
 		using std::sqrt;
 		const MeanRotation<Number> mean(reference, fromCentre);
 		const Number               inverse = Number(1) / sqrt(mean.a * mean.a + mean.b * mean.b);
 		return { inverse * mean.a, inverse * mean.b };
 	}
-	/** The frame depends on the vertices, so the moment it carries goes back to them as m ∂θ/∂x_e: without this term the forces would not derive from an
-	 * energy, and angular momentum would drift by the square of the strain. */
+	/** The frame depends on the vertices, so the moment it carries goes back to them as m ∂θ/∂x_e: without this
+	 * term the forces would not derive from an energy, and angular momentum would drift by
+	 * the square of the strain. */
 	template <class Number>
 	static ElementForces<Number> distribute(
 	        const TriangleReference<Number>&     reference,
@@ -112,7 +121,8 @@ struct FrameCorotational {
 struct FrameCosserat {
 	static constexpr bool coreRotates = true;
 	template <class Number>
-	static PlaneRotation<Number> rotation(const TriangleReference<Number>&, const RelativeDisplacements<Number>&, const Number& coreRotation)
+	static PlaneRotation<Number>
+	rotation(const TriangleReference<Number>&, const RelativeDisplacements<Number>&, const Number& coreRotation)
 	{
 		const auto [sine, cosine] = sincos(coreRotation);
 		return { cosine, sine };
@@ -125,7 +135,9 @@ struct FrameCosserat {
 	        const RelativeDisplacements<Number>& du,
 	        const RelativeDisplacements<Number>& q)
 	{
-		return { { -(frame * q[0]), -(frame * q[1]), -(frame * q[2]) }, frame * (q[0] + q[1] + q[2]), coreMoment(reference, du, q) };
+		return { { -(frame * q[0]), -(frame * q[1]), -(frame * q[2]) },
+			 frame * (q[0] + q[1] + q[2]),
+			 coreMoment(reference, du, q) };
 	}
 };
 

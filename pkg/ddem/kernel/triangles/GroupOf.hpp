@@ -20,8 +20,9 @@ namespace detail {
 	{
 		using Result       = decltype(use(std::integral_constant<unsigned, 0>()));
 		using Call         = Result (*)(Use&);
-		static constexpr Call calls[]
-		        = { [](Use& u) -> Result { return u(std::integral_constant<unsigned, Law::distinct(unsigned(masks))>()); }... };
+		static constexpr Call calls[] = { [](Use& u) -> Result {
+			return u(std::integral_constant<unsigned, Law::distinct(unsigned(masks))>());
+		}... };
 		return calls[effects](use);
 	}
 
@@ -46,7 +47,8 @@ namespace detail {
 /// Calls use with the mask as a compile-time constant.
 template <class Law, class Use> auto withMask(unsigned effects, Use&& use)
 {
-	if (effects > Law::allEffects) throw std::invalid_argument("unknown effect in the mask " + std::to_string(effects));
+	if (effects > Law::allEffects)
+		throw std::invalid_argument("unknown effect in the mask " + std::to_string(effects));
 	return detail::withMask<Law>(effects, use, std::make_index_sequence<Law::allEffects + 1>());
 }
 
@@ -71,7 +73,8 @@ public:
 			Law::template properties<mask()>(any, list);
 		});
 		propertyNames = list.list;
-		if (propertyNames.size() > mostProperties) throw std::logic_error("a law has more properties than mostProperties");
+		if (propertyNames.size() > mostProperties)
+			throw std::logic_error("a law has more properties than mostProperties");
 		own.resize(propertyNames.size());
 		prepare(RotationTreatment::Cosserat);
 	}
@@ -140,29 +143,36 @@ public:
 			for (std::size_t i = 0; i < triangles(); i++)
 				for (std::size_t k = 0; k < 3; k++)
 					for (std::size_t c = 0; c < old.columns(); c++)
-						columns.row(i, k)[c * columns.columnStep(i)] = old.row(i, k)[c * old.columnStep(i)];
+						columns.row(i, k)[c * columns.columnStep(i)]
+						        = old.row(i, k)[c * old.columnStep(i)];
 		}
 		for (std::size_t i = 0; i < triangles(); i++) {
 			const auto strain = strainOf(i);
 			for (std::size_t k = 0; k < 3; k++) {
 				State s = load(i, k);
-				withMask<Law>(layout, [&](auto mask) { Law::template openBook<mask()>(prepared, strain[k], s); });
+				withMask<Law>(layout, [&](auto mask) {
+					Law::template openBook<mask()>(prepared, strain[k], s);
+				});
 				store(i, k, s);
 			}
 		}
 		columns.fillUp();
 	}
 
-	void beginAt(std::size_t i, const std::set<std::string>& missing, const std::array<PlaneTensor, 3>& strain) override
+	void
+	beginAt(std::size_t i, const std::set<std::string>& missing, const std::array<PlaneTensor, 3>& strain) override
 	{
 		const ListFields ofLaw  = fieldsOf(on); // without the book's
-		const bool       lawNew = std::any_of(
-                        ofLaw.list.begin(), ofLaw.list.end(), [&](const StateField& f) { return missing.count(f.name) > 0; });
+		const bool lawNew = std::any_of(ofLaw.list.begin(), ofLaw.list.end(), [&](const StateField& f) {
+			return missing.count(f.name) > 0;
+		});
 		for (std::size_t k = 0; k < 3; k++) {
 			State s = load(i, k);
 			if (lawNew) withMask<Law>(on, [&](auto mask) { Law::template beginAt<mask()>(strain[k], s); });
 			if (book && !missing.empty())
-				withMask<Law>(layout, [&](auto mask) { Law::template openBook<mask()>(prepared, strain[k], s); });
+				withMask<Law>(layout, [&](auto mask) {
+					Law::template openBook<mask()>(prepared, strain[k], s);
+				});
 			store(i, k, s);
 		}
 	}
@@ -285,14 +295,16 @@ private:
 	{
 		State s {};
 		withMask<Law>(layout, [&](auto mask) {
-			Law::template fields<mask()>(s, LoadFields<double> { columns.row(triangle, k), columns.columnStep(triangle) });
+			Law::template fields<mask()>(
+			        s, LoadFields<double> { columns.row(triangle, k), columns.columnStep(triangle) });
 		});
 		return s;
 	}
 	void store(std::size_t triangle, std::size_t k, State& s)
 	{
 		withMask<Law>(layout, [&](auto mask) {
-			Law::template fields<mask()>(s, StoreFields<double> { columns.row(triangle, k), columns.columnStep(triangle) });
+			Law::template fields<mask()>(
+			        s, StoreFields<double> { columns.row(triangle, k), columns.columnStep(triangle) });
 		});
 	}
 	void store(std::size_t triangle, std::size_t k, const State& s)

@@ -83,7 +83,10 @@ struct LawDefaults {
 	/// Numbers that a triangle has of its own, at most mostProperties.
 	template <class Number> struct Properties { };
 	template <unsigned effects, class P, class Visit> static void properties(P&, Visit&&) { }
-	template <class Prepared> static Properties<double> propertiesOf(const Prepared&, const TriangleProperties&) { return {}; }
+	template <class Prepared> static Properties<double> propertiesOf(const Prepared&, const TriangleProperties&)
+	{
+		return {};
+	}
 
 	/// Whether it may be held: see LawLoops.hpp. Then it has
 	///     hold<effects>(law, own, strain, state): the stress of a held step,
@@ -96,12 +99,20 @@ struct LawDefaults {
 	///     beyondThreshold<effects>(law, own, strain): where elastic stress may no longer do; strain has no zz.
 	static constexpr bool hasThreshold(unsigned) { return false; }
 
-	/// Called where a law begins in the midst of a run, at this strain: its state is virgin but for what it knew before.
+	/// Called where a law begins in the midst of a run, at this strain:
+	/// its state is virgin but for what it knew before.
 	template <unsigned effects, class State> static void beginAt(const PlaneTensor&, State&) { }
 	/// Called when the energy book is opened: fields that only the book has get their values.
-	template <unsigned effects, class Prepared, class State> static void openBook(const Prepared&, const PlaneTensor&, State&) { }
+	template <unsigned effects, class Prepared, class State>
+	static void openBook(const Prepared&, const PlaneTensor&, State&)
+	{
+	}
 
-	template <class Prepared, class State> static double damage(const Prepared&, const Properties<double>&, const State&) { return 0; }
+	template <class Prepared, class State>
+	static double damage(const Prepared&, const Properties<double>&, const State&)
+	{
+		return 0;
+	}
 	template <class Prepared, class State> static double stiffening(const Prepared&, const State&) { return 1; }
 };
 
@@ -155,7 +166,8 @@ public:
 	using StrainOf = std::function<std::array<PlaneTensor, 3>(std::size_t triangle)>;
 	/// Opens the energy book, which begins with the present strains, or leaves it.
 	virtual void keepBook(bool energy, const StrainOf& strain) = 0;
-	/// In the midst of a run, at the present strain: `missing` fields of a triangle have just begun to be remembered.
+	/// In the midst of a run, at the present strain:
+	/// `missing` fields of a triangle have just begun to be remembered.
 	virtual void beginAt(
 	        std::size_t triangle, const std::set<std::string>& missing, const std::array<PlaneTensor, 3>& strain)
 	        = 0;

@@ -27,8 +27,8 @@ template <class Law, class Number> struct LoadProperties {
 
 /// Rotation part of the forces and of the energy [J], eqs. 2–3; nothing where cores do not rotate.
 template <class Frame, bool energy, class Number>
-inline void
-addRotation(const GroupConstants& g, const LoadedElement<Number>& element, RelativeDisplacements<Number>& q, Number& stored)
+inline void addRotation(
+        const GroupConstants& g, const LoadedElement<Number>& element, RelativeDisplacements<Number>& q, Number& stored)
 {
 	if constexpr (Frame::coreRotates) {
 		const Number strain = rotationStrain(element.reference, element.du);

@@ -11,7 +11,8 @@ namespace MotionEffects {
 	enum : unsigned { External = 1, Gravity = 2, Damping = 4, Energy = 8, Combinations = 16 };
 	inline unsigned select(const StepSettings& settings)
 	{
-		return (settings.external ? unsigned(External) : 0) | (settings.gravity.x != 0 || settings.gravity.y != 0 ? unsigned(Gravity) : 0)
+		return (settings.external ? unsigned(External) : 0)
+		        | (settings.gravity.x != 0 || settings.gravity.y != 0 ? unsigned(Gravity) : 0)
 		        | (settings.damping != 0 ? unsigned(Damping) : 0) | (settings.energy ? unsigned(Energy) : 0);
 	}
 }
@@ -25,8 +26,9 @@ inline double localDamping(double damping, double acceleration, double velocity,
 
 /// One degree of freedom: returns its new velocity and books its work. inverseMass 0 keeps the velocity.
 template <unsigned effects>
-inline double
-accelerate(double velocity, double force, double external, double gravity, double mass, double inverseMass, const StepsAround& dt, double damping, MotionSums& sums)
+inline double accelerate(
+        double velocity, double force, double external, double gravity, double mass, double inverseMass,
+        const StepsAround& dt, double damping, MotionSums& sums)
 {
 	using namespace MotionEffects;
 	double total = force;
@@ -42,8 +44,10 @@ accelerate(double velocity, double force, double external, double gravity, doubl
 	const double next = velocity + dt.between() * acceleration;
 	if constexpr (effects & Energy) {
 		const bool                    blocked = inverseMass == 0; // belongs to the outside
-		[[maybe_unused]] const double before = blocked ? 0 : 0.5 * dt.before, after = blocked ? 0 : 0.5 * dt.after;
-		sums.before.kinetic += blocked ? 0 : 0.5 * mass * velocity * (velocity + dt.before * acceleration); // as if the step had not changed
+		[[maybe_unused]] const double before = blocked ? 0 : 0.5 * dt.before,
+		                              after = blocked ? 0 : 0.5 * dt.after;
+		// as if the step had not changed
+		sums.before.kinetic += blocked ? 0 : 0.5 * mass * velocity * (velocity + dt.before * acceleration);
 		if constexpr (effects & External) {
 			sums.before.externalWork += before * external * velocity;
 			sums.after.externalWork += after * external * next;
@@ -76,7 +80,9 @@ inline double sumOfSquares(const double* values, std::size_t n)
 // Sums are kept in a local variable during a loop: no array can alias it, so it stays in registers.
 
 template <unsigned effects>
-void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps, MotionSums& sums)
+void movePoints(
+        Points& points, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps,
+        MotionSums& sums)
 {
 	const bool         external      = (effects & MotionEffects::External) && !points.external.empty();
 	const StepsAround  dt            = steps;
@@ -91,8 +97,9 @@ void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSe
 	for (std::size_t p = begin; p < end; p++)
 		for (std::size_t c = 0; c < 2; c++) {
 			const std::size_t i = 2 * p + c;
-			const double      next
-			        = accelerate<effects>(velocity[i], force[i], external ? points.external[i] : 0., g[c], mass[p], inverse[i], dt, damping, local);
+			const double next = accelerate<effects>(
+			        velocity[i], force[i], external ? points.external[i] : 0., g[c], mass[p], inverse[i],
+			        dt, damping, local);
 			velocity[i] = next;
 			position[i] += dt.after * next;
 		}
@@ -101,9 +108,12 @@ void movePoints(Points& points, std::size_t begin, std::size_t end, const StepSe
 }
 
 template <unsigned effects>
-void moveSpins(Spins& spins, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps, MotionSums& sums)
+void moveSpins(
+        Spins& spins, std::size_t begin, std::size_t end, const StepSettings& settings, const StepsAround& steps,
+        MotionSums& sums)
 {
-	constexpr unsigned here          = effects & ~unsigned(MotionEffects::Gravity); // gravity has no moment about the mass centre
+	// gravity has no moment about the mass centre
+	constexpr unsigned here          = effects & ~unsigned(MotionEffects::Gravity);
 	const bool         external      = (effects & MotionEffects::External) && !spins.external.empty();
 	const StepsAround  dt            = steps;
 	const double       damping       = settings.damping;
@@ -114,7 +124,9 @@ void moveSpins(Spins& spins, std::size_t begin, std::size_t end, const StepSetti
 	const double* __restrict inertia = spins.inertia.data();
 	MotionSums local;
 	for (std::size_t i = begin; i < end; i++) {
-		const double next = accelerate<here>(velocity[i], moment[i], external ? spins.external[i] : 0., 0., inertia[i], inverse[i], dt, damping, local);
+		const double next = accelerate<here>(
+		        velocity[i], moment[i], external ? spins.external[i] : 0., 0., inertia[i], inverse[i], dt,
+		        damping, local);
 		velocity[i]       = next;
 		angle[i] += dt.after * next;
 	}

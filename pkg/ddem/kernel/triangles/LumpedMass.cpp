@@ -19,7 +19,9 @@ namespace {
 
 } // namespace
 
-LumpedMass lumpMass(const TriangleReference<double>& reference, double density, double thickness, double vertexShare, RotationTreatment rotation)
+LumpedMass lumpMass(
+        const TriangleReference<double>& reference, double density, double thickness, double vertexShare,
+        RotationTreatment rotation)
 {
 	requirePositive("density", density, "kg/m³");
 	requirePositive("thickness", thickness, "m");
@@ -27,8 +29,11 @@ LumpedMass lumpMass(const TriangleReference<double>& reference, double density, 
 	const double limit   = rotates ? 0.25 : 1.;
 	if (!(vertexShare > 0 && vertexShare < limit)) {
 		std::ostringstream text;
-		text << "vertexShare = " << vertexShare << " (share of the mass that goes to the vertices) must lie between 0 and "
-		     << (rotates ? "1/4 where cores rotate: from there on no inertia is left for the core; 1/6 is a good choice" : "1");
+		text << "vertexShare = " << vertexShare
+		     << " (share of the mass that goes to the vertices) must lie between 0 and "
+		     << (rotates ? "1/4 where cores rotate: from there on no inertia is left for the core; 1/6 is a "
+		                   "good choice"
+		                 : "1");
 		throw std::invalid_argument(text.str());
 	}
 	const double mass = density * reference.area() * thickness;

@@ -14,7 +14,8 @@ namespace {
 
 	/** Lists the blocked degrees of freedom; keeps the last velocity of those known before.
 	 * \param share degrees of freedom per entry of mass.
-	 * \return the work of the change [J]: one that becomes blocked takes its kinetic energy out of the book, one that is released brings it in. */
+	 * \return the work of the change [J]: one that becomes blocked takes its kinetic energy out of the book,
+	 * one that is released brings it in. */
 	double
 	collect(const ReservedArray<double>& inverseMass,
 	        const ReservedArray<double>& mass,
@@ -26,7 +27,8 @@ namespace {
 		old.swap(list);
 		double     work    = 0;
 		auto       known   = old.begin();
-		const auto kinetic = [&](const Constraint& c) { return 0.5 * mass[c.index / share] * c.velocity * c.velocity; };
+		const auto kinetic
+		        = [&](const Constraint& c) { return 0.5 * mass[c.index / share] * c.velocity * c.velocity; };
 		for (std::size_t i = 0; i < inverseMass.size(); i++) {
 			const bool wasBlocked = known != old.end() && known->index == i;
 			if (inverseMass[i] == 0) {
@@ -39,8 +41,8 @@ namespace {
 		return work;
 	}
 
-	/// Work done on the system by what prescribes velocities: the reaction is minus the internal force. The trailing half step used the
-	/// last velocity. It goes to the tile of the point.
+	/// Work done on the system by what prescribes velocities: the reaction is minus the internal force.
+	/// The trailing half step used the last velocity. It goes to the tile of the point.
 	template <class TileOf>
 	void bookReactions(
 	        std::vector<Constraint>&     list,
@@ -58,18 +60,23 @@ namespace {
 		}
 	}
 
-	void requireNumbers(std::size_t n, std::size_t share, std::initializer_list<const ReservedArray<double>*> parts, const std::vector<double>& external)
+	void requireNumbers(
+	        std::size_t n, std::size_t share, std::initializer_list<const ReservedArray<double>*> parts,
+	        const std::vector<double>& external)
 	{
 		for (const auto* part : parts)
 			if (part->size() != share * n)
-				throw std::logic_error("Motion: position, velocity, mass and force of every node, core and spin are needed");
+				throw std::logic_error("Motion: position, velocity, mass and force of every node, core "
+				                       "and spin are needed");
 		if (!external.empty() && external.size() != share * n)
 			throw std::logic_error("Motion: external forces must be given for all or for none");
 	}
 
 	std::size_t firstBad(const ReservedArray<double>& values)
 	{
-		return std::size_t(std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); }) - values.begin());
+		return std::size_t(
+		        std::find_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); })
+		        - values.begin());
 	}
 
 } // namespace
@@ -91,10 +98,13 @@ void Spins::resize(std::size_t n)
 
 void Motion::requireComplete() const
 {
-	requireNumbers(node.mass.size(), 2, { &node.position, &node.velocity, &node.inverseMass, &node.force }, node.external);
-	requireNumbers(core.mass.size(), 2, { &core.position, &core.velocity, &core.inverseMass, &core.force }, core.external);
 	requireNumbers(
-	        spin.angle.size(), 1, { &spin.velocity, &spin.inverseInertia, &spin.inertia, &spin.moment }, spin.external);
+	        node.mass.size(), 2, { &node.position, &node.velocity, &node.inverseMass, &node.force }, node.external);
+	requireNumbers(
+	        core.mass.size(), 2, { &core.position, &core.velocity, &core.inverseMass, &core.force }, core.external);
+	requireNumbers(
+	        spin.angle.size(), 1, { &spin.velocity, &spin.inverseInertia, &spin.inertia, &spin.moment },
+	        spin.external);
 }
 
 void Motion::collectConstraints()
@@ -111,7 +121,7 @@ StepEnergy Motion::closeBook(
 		return std::size_t(std::upper_bound(tileStart.begin(), tileStart.end(), i) - tileStart.begin()) - 1;
 	};
 	const auto tileOfNode = [&](std::size_t i) { return tileStart.size() + i / nodesPerTile; };
-	const auto half       = [](const auto& tileOf) { return [&tileOf](std::size_t index) { return tileOf(index / 2); }; };
+	const auto half = [](const auto& tileOf) { return [&tileOf](std::size_t index) { return tileOf(index / 2); }; };
 	bookReactions(nodeConstraint, node.velocity, node.force, steps, tiles, half(tileOfNode));
 	bookReactions(coreConstraint, core.velocity, core.force, steps, tiles, half(tileOfTriangle));
 	bookReactions(spinConstraint, spin.velocity, spin.moment, steps, tiles, tileOfTriangle);
@@ -130,7 +140,8 @@ StepEnergy Motion::closeBook(
 
 Motion::Book Motion::book() const
 {
-	const auto list = [](const ReservedArray<double>& values) { return std::vector<double>(values.begin(), values.end()); };
+	const auto list
+	        = [](const ReservedArray<double>& values) { return std::vector<double>(values.begin(), values.end()); };
 	Book       saved { pending.gravityWork,   pending.externalWork, pending.dampingLoss,
 		     list(node.velocity), list(core.velocity),  list(spin.velocity) };
 	for (const auto& c : nodeConstraint)
@@ -144,7 +155,8 @@ Motion::Book Motion::book() const
 
 void Motion::setBook(const Book& saved)
 {
-	if (saved.nodeVelocity.size() != node.velocity.size() || saved.coreVelocity.size() != core.velocity.size() || saved.spinVelocity.size() != spin.velocity.size())
+	if (saved.nodeVelocity.size() != node.velocity.size() || saved.coreVelocity.size() != core.velocity.size()
+	    || saved.spinVelocity.size() != spin.velocity.size())
 		throw std::logic_error("TriangleSystem: the energy book belongs to another system");
 	pending.gravityWork  = saved.gravityWork;
 	pending.externalWork = saved.externalWork;

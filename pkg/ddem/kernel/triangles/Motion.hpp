@@ -51,7 +51,8 @@ struct Constraint {
 	double      velocity = 0; ///< velocity of the last step [m/s, rad/s]
 };
 
-/// Time steps on both sides of the present positions. Velocities live half a step from them, so what accelerates acts for half of each.
+/// Time steps on both sides of the present positions. Velocities live half a step from them,
+/// so what accelerates acts for half of each.
 struct StepsAround {
 	double before, after; ///< [s]
 
@@ -77,21 +78,22 @@ class Motion {
 public:
 	Points node, core;
 	Spins  spin;             ///< of the cores; empty unless they rotate
-	double lastTimeStep = 0; ///< of the last step [s]; velocities are half of it before the positions. 0: equal to the next
+	double lastTimeStep = 0; ///< of the last step [s]; velocities are half of it before the positions.
+	                         ///< 0: equal to the next
 
 	/// \throws std::logic_error unless every node, core and spin has all its numbers.
 	void requireComplete() const;
 
-	/// Tells the energy book which degrees of freedom are blocked now (inverse mass 0); call after changing any, and before their
-	/// velocities are changed.
+	/// Tells the energy book which degrees of freedom are blocked now (inverse mass 0); call after changing any,
+	/// and before their velocities are changed.
 	void collectConstraints();
 
 	/// Nodes that threads share out in one piece.
 	static constexpr std::size_t nodesPerTile = 1024;
 	std::size_t                  nodeTiles() const { return (node.size() + nodesPerTile - 1) / nodesPerTile; }
 
-	/** Closes the book of a step whose forces and motion are done: adds what reactions did, and keeps the works of the second half step
-	 * for the next.
+	/** Closes the book of a step whose forces and motion are done: adds what reactions did, and keeps the works
+	 * of the second half step for the next.
 	 * \param tiles sums of the triangles' tiles, then of the nodes'.
 	 * \param tileStart first triangle of every tile. */
 	StepEnergy
@@ -105,11 +107,13 @@ public:
 		dropBook();
 	}
 
-	/// What the energy book needs to go on after a restart: works of the half step after the last positions, and for every degree of
-	/// freedom the velocity of the last step, which differs from the present one where it is prescribed.
+	/// What the energy book needs to go on after a restart: works of the half step after the last positions, and
+	/// for every degree of freedom the velocity of the last step, which differs from the present
+	/// one where it is prescribed.
 	struct Book {
 		double              gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< [J]
-		std::vector<double> nodeVelocity, coreVelocity, spinVelocity; ///< [m/s, rad/s], as Points::velocity and Spins::velocity
+		/// [m/s, rad/s], as Points::velocity and Spins::velocity
+		std::vector<double> nodeVelocity, coreVelocity, spinVelocity;
 	};
 	Book book() const;
 	/// \throws std::logic_error if the sizes are not those of this system.

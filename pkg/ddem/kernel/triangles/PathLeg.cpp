@@ -18,10 +18,12 @@ namespace {
 
 void checkInitialDamage(const PlaneTensor& damage)
 {
-	const bool semiDefinite = damage.xx >= 0 && damage.yy >= 0 && damage.zz >= 0 && damage.xx * damage.yy >= damage.xy * damage.xy;
+	const bool semiDefinite
+	        = damage.xx >= 0 && damage.yy >= 0 && damage.zz >= 0 && damage.xx * damage.yy >= damage.xy * damage.xy;
 	if (semiDefinite && isFinite(damage)) return;
 	std::ostringstream message;
-	message << "pre-existing damage (xx, yy, zz, xy) = (" << damage.xx << ", " << damage.yy << ", " << damage.zz << ", " << damage.xy
+	message << "pre-existing damage (xx, yy, zz, xy) = (" << damage.xx << ", " << damage.yy << ", " << damage.zz
+	        << ", " << damage.xy
 	        << ") [-] must be finite and positive semi-definite: diagonal at least 0 and xy² at most xx yy.";
 	throw std::invalid_argument(message.str());
 }

@@ -13,8 +13,9 @@ namespace yade::ddem {
 /// What a component of a path prescribes.
 enum class Control { Strain, Stress };
 
-/// One leg of a path: every component goes linearly from where it is to its target, as a strain [-] or as a stress [Pa], within
-/// `duration` [s]. Uniaxial stress is yy by strain and xx, zz by stress; plane strain has zz by strain, target 0.
+/// One leg of a path: every component goes linearly from where it is to its target, as a strain [-] or as
+/// a stress [Pa], within `duration` [s]. Uniaxial stress is yy by strain and xx, zz by stress;
+/// plane strain has zz by strain, target 0.
 struct PathLeg {
 	std::array<Control, 4> control;  ///< of xx, yy, zz, xy
 	PlaneTensor            target;   ///< strains or stresses at the end of the leg

@@ -14,8 +14,9 @@
 
 namespace yade::ddem {
 
-/// Drives a law along legs. Strains that the path leaves free are found in every step by Newton's method so that their stresses meet the
-/// path within `stressTolerance`; a step that does not converge, or in which a free strain changes by more than 2e-5, is halved.
+/// Drives a law along legs. Strains that the path leaves free are found in every step by Newton's method so that their
+/// stresses meet the path within `stressTolerance`; a step that does not converge, or in which a free strain changes by
+/// more than 2e-5, is halved.
 template <class Law> class PointOf {
 public:
 	using State      = typename Law::template State<double>;
@@ -30,7 +31,8 @@ public:
 	};
 
 	/** \param effects mask of the law's effects.
-	 * \param properties what a triangle would tell: pre-existing damage, fracture energy, factor of a crack band, area.
+	 * \param properties what a triangle would tell: pre-existing damage, fracture energy, factor of a crack
+	 * band, area.
 	 * \throws std::invalid_argument for a bad parameter, effect, damage or factor. */
 	explicit PointOf(
 	        const typename Law::Parameters& parameters = typename Law::Parameters(),
@@ -50,14 +52,15 @@ public:
 		point_.state = Law::virgin(prepared_, properties);
 	}
 
-	/// Runs a leg and returns the point after every `every`-th step and at the end. Throws std::invalid_argument for a bad leg and
-	/// std::runtime_error, with the time and the component, where no strain gives the stress asked for (more than the material bears).
-	/// The point then stays where the last step that worked left it.
+	/// Runs a leg and returns the point after every `every`-th step and at the end. Throws std::invalid_argument
+	/// for a bad leg and std::runtime_error, with the time and the component, where no strain gives the stress
+	/// asked for (more than the material bears). The point then stays where the last step that worked left it.
 	std::vector<PathPoint> run(const PathLeg& leg, std::size_t every = 1)
 	{
 		leg.validate(every);
 		const PathPoint  start  = point_;
-		const Components target = componentsOf(leg.target), strain = componentsOf(start.strain), stress = componentsOf(start.stress);
+		const Components target = componentsOf(leg.target), strain = componentsOf(start.strain),
+		                 stress = componentsOf(start.stress);
 
 		std::vector<PathPoint> points;
 		points.reserve(leg.steps / every + 1);
@@ -66,7 +69,8 @@ public:
 			const double share     = static_cast<double>(i) / static_cast<double>(leg.steps);
 			Components   newStrain = componentsOf(point_.strain), newStress {};
 			for (std::size_t k = 0; k < 4; ++k) {
-				if (leg.control[k] == Control::Strain) newStrain[k] = strain[k] + share * (target[k] - strain[k]);
+				if (leg.control[k] == Control::Strain)
+					newStrain[k] = strain[k] + share * (target[k] - strain[k]);
 				else
 					newStress[k] = stress[k] + share * (target[k] - stress[k]);
 			}
@@ -93,9 +97,9 @@ public:
 private:
 	using Components = std::array<double, 4>;
 
-	/// Largest change of a free strain in one step [-]. Cracked concrete dilates, and a free strain may change ten times as fast as the
-	/// driven one: the elastic predictor of a larger step opens a closed crack, and Newton's method then finds another strain with the
-	/// stress asked for, 6 MPa away in what is driven.
+	/// Largest change of a free strain in one step [-]. Cracked concrete dilates, and a free strain may change ten
+	/// times as fast as the driven one: the elastic predictor of a larger step opens a closed crack, and Newton's
+	/// method then finds another strain with the stress asked for, 6 MPa away in what is driven.
 	static constexpr double freeStrainLimit = 2e-5;
 
 	PathPoint advanced(const PathPoint& from, const PlaneTensor& strain, double dt) const
@@ -149,7 +153,8 @@ private:
 			}
 			const Vector change = tangent.fullPivLu().solve(-residual);
 			if (!change.allFinite()) break;
-			// halve the correction until the residual falls: the law has kinks where flow starts and cracks close
+			// halve the correction until the residual falls:
+			// the law has kinks where flow starts and cracks close
 			double     scale = 1;
 			Components next  = now;
 			for (int search = 0; search < 12; ++search, scale *= 0.5) {
@@ -180,7 +185,8 @@ private:
 			halfStrain[k] = 0.5 * (before[k] + strain[k]);
 			halfStress[k] = 0.5 * (from[k] + stress[k]);
 		}
-		return step(leg, halfStrain, halfStress, 0.5 * dt, halvings - 1) && step(leg, strain, stress, 0.5 * dt, halvings - 1);
+		return step(leg, halfStrain, halfStress, 0.5 * dt, halvings - 1)
+		        && step(leg, strain, stress, 0.5 * dt, halvings - 1);
 	}
 
 	typename Law::Prepared prepared_;

@@ -12,7 +12,8 @@ namespace {
 	constexpr int corePlace = 6, rotationPlace = 8;
 
 	/// Row of ∂(g·Δu_e)/∂(unknowns) with ∂Δu_e = u_e − u_i − φ e_z × (r_e + Δu_e), added to a strain row.
-	void addRelativeDisplacement(const PlaneVector<double>& arm, int e, const PlaneVector<double>& g, Eigen::Ref<Eigen::RowVectorXd> row)
+	void addRelativeDisplacement(
+	        const PlaneVector<double>& arm, int e, const PlaneVector<double>& g, Eigen::Ref<Eigen::RowVectorXd> row)
 	{
 		row[2 * e] += g.x;
 		row[2 * e + 1] += g.y;
@@ -22,7 +23,8 @@ namespace {
 	}
 
 	/// ∂θ/∂u_e of the corotational frame, in that frame [1/m].
-	std::array<PlaneVector<double>, 3> frameGradient(const TriangleReference<double>& reference, const RelativeDisplacements<double>& shape)
+	std::array<PlaneVector<double>, 3>
+	frameGradient(const TriangleReference<double>& reference, const RelativeDisplacements<double>& shape)
 	{
 		const MeanRotation<double>         mean(reference, shape);
 		std::array<PlaneVector<double>, 3> gradient;
@@ -32,7 +34,8 @@ namespace {
 	}
 
 	/// r_e + Δu_e.
-	RelativeDisplacements<double> shapeOf(const TriangleReference<double>& reference, const RelativeDisplacements<double>& du)
+	RelativeDisplacements<double>
+	shapeOf(const TriangleReference<double>& reference, const RelativeDisplacements<double>& du)
 	{
 		return { reference.arm[0] + du[0], reference.arm[1] + du[1], reference.arm[2] + du[2] };
 	}
@@ -53,7 +56,8 @@ ElementMatrix elementStiffness(
 	moduli << normal, lambda(stiffness), 0, lambda(stiffness), normal, 0, 0, 0, stiffness.shear;
 	const RelativeDisplacements<double>      shape    = shapeOf(reference, du);
 	const double                             twice    = reference.twiceSubArea();
-	const std::array<PlaneVector<double>, 3> gradient = rotation == RotationTreatment::Corotational ? frameGradient(reference, shape) : shape;
+	const std::array<PlaneVector<double>, 3> gradient
+	        = rotation == RotationTreatment::Corotational ? frameGradient(reference, shape) : shape;
 	ElementMatrix                            matrix   = ElementMatrix::Zero();
 	for (int k = 0; k < 3; k++) {
 		const int                   next = (k + 1) % 3;
@@ -83,7 +87,8 @@ ElementMatrix elementStiffness(
 		Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(9);
 		for (int e = 0; e < 3; e++)
 			addRelativeDisplacement(shape[e], e, (1. / 3) * rotationGradient(reference.arm[e]), row);
-		matrix += reference.area() * thickness * stiffness.shear * stiffness.rotationStiffness * row.transpose() * row;
+		matrix += reference.area() * thickness * stiffness.shear * stiffness.rotationStiffness * row.transpose()
+		        * row;
 	}
 	return matrix;
 }
@@ -91,7 +96,8 @@ ElementMatrix elementStiffness(
 ElementVector elementMass(const LumpedMass& mass)
 {
 	ElementVector diagonal;
-	diagonal << mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.core, mass.core, mass.inertia;
+	diagonal << mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.vertex, mass.core, mass.core,
+	        mass.inertia;
 	return diagonal;
 }
 
@@ -123,7 +129,8 @@ double frequencyGrowth(
 	const RelativeDisplacements<double> turn   = { turned(du[0]), turned(du[1]), turned(du[2]) };
 	double                              energy = 0; // twice that of these displacements
 	for (const auto& strain : subElementStrains(reference, turn))
-		energy += reference.twiceSubArea() * energyDensity(elasticStress(strain, lambda(stiffness), stiffness.shear), strain);
+		energy += reference.twiceSubArea()
+		        * energyDensity(elasticStress(strain, lambda(stiffness), stiffness.shear), strain);
 	double mobility = 0; // Σ of squared angle per unit momentum
 	if (rotation == RotationTreatment::Cosserat) {
 		const double strain = rotationStrain(reference, turn);

@@ -39,7 +39,8 @@ struct StateField {
 //     template <unsigned effects, class State, class Visit> static void fields(State& s, Visit&& visit)
 //     {
 //             visit.scalar("largestStrain", "-", s.largestStrain);
-//             if constexpr (effects & LawEffects::Energy) visit.scalar("damageDissipation", "J/m³", s.damageDissipation);
+//             if constexpr (effects & LawEffects::Energy) visit.scalar("damageDissipation", "J/m³",
+//             s.damageDissipation);
 //     }
 //
 // Fields that only the energy book needs come last, so that the book can be opened and closed during a run.
@@ -148,8 +149,8 @@ private:
 	}
 };
 
-/** Columns of the sub-elements of so many triangles. A tile is one piece of memory: column after column, in a column sub-element
- * after sub-element, in a sub-element triangle after triangle, filled up to whole batches. */
+/** Columns of the sub-elements of so many triangles. A tile is one piece of memory: column after column, in a column
+ * sub-element after sub-element, in a sub-element triangle after triangle, filled up to whole batches. */
 class StateColumns {
 public:
 	void resize(std::size_t triangles, std::size_t columns)
@@ -167,12 +168,19 @@ public:
 	/// Start of a tile.
 	double*       tile(std::size_t t) { return numbers.data() + t * tileSize * 3 * width; }
 	const double* tile(std::size_t t) const { return numbers.data() + t * tileSize * 3 * width; }
-	/// Distance in a tile from a sub-element's number to that of the next sub-element of the triangle; three of them to the next column.
-	std::size_t stride(std::size_t t) const { return (t + 1) * tileSize <= rows ? tileSize : padded(rows % tileSize); }
+	/// Distance in a tile from a sub-element's number to that of the next sub-element of the triangle;
+	/// three of them to the next column.
+	std::size_t stride(std::size_t t) const
+	{
+		return (t + 1) * tileSize <= rows ? tileSize : padded(rows % tileSize);
+	}
 
 	/// Column 0 of sub-element k of a triangle (or of what fills up its tile); further columns are 3·stride apart.
-	double*       row(std::size_t triangle, std::size_t k) { return tile(triangle / tileSize) + place(triangle, k); }
-	const double* row(std::size_t triangle, std::size_t k) const { return tile(triangle / tileSize) + place(triangle, k); }
+	double* row(std::size_t triangle, std::size_t k) { return tile(triangle / tileSize) + place(triangle, k); }
+	const double* row(std::size_t triangle, std::size_t k) const
+	{
+		return tile(triangle / tileSize) + place(triangle, k);
+	}
 	std::size_t   columnStep(std::size_t triangle) const { return 3 * stride(triangle / tileSize); }
 
 	/// Copies the last triangle into what fills up the last tile.

@@ -4,9 +4,9 @@
 
 namespace yade::ddem {
 
-/** Energies of one step [J]. Works are what forces did up to the instant of the positions the step started from; kinetic energy is
- * the leapfrog's conserved product ½ m v(n−½)·v(n+½), which together with the elastic energy is constant to round-off in a linear
- * system while the time step is. */
+/** Energies of one step [J]. Works are what forces did up to the instant of the positions the step started from;
+ * kinetic energy is the leapfrog's conserved product ½ m v(n−½)·v(n+½), which together with the elastic energy is
+ * constant to round-off in a linear system while the time step is. */
 struct StepEnergy {
 	double kinetic = 0, elastic = 0, rotation = 0, plastic = 0, damage = 0;
 	double gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< increments since the last step

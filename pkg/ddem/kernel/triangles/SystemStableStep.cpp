@@ -19,12 +19,14 @@ namespace {
 
 	LumpedMass massOf(const TriangleSystem& system, double vertexShare, std::size_t i)
 	{
-		return { system.motion.core.mass[i] * vertexShare / (3 * (1 - vertexShare)), system.motion.core.mass[i], system.motion.spin.size() ? system.motion.spin.inertia[i] : 0 };
+		return { system.motion.core.mass[i] * vertexShare / (3 * (1 - vertexShare)), system.motion.core.mass[i],
+			 system.motion.spin.size() ? system.motion.spin.inertia[i] : 0 };
 	}
 
 } // namespace
 
-SystemStableStep stableStep(const TriangleSystem& system, const std::vector<double>& restFrequency, double vertexShare, double enough)
+SystemStableStep
+stableStep(const TriangleSystem& system, const std::vector<double>& restFrequency, double vertexShare, double enough)
 {
 	struct Growth {
 		double frequency, stiffening;
@@ -39,7 +41,9 @@ SystemStableStep stableStep(const TriangleSystem& system, const std::vector<doub
 			growth[i].frequency = system.rotation == RotationTreatment::None
 			        ? 0
 			        : frequencyGrowth(
-			                system.topology.reference(i), stiffness, g.constants.thickness, massOf(system, vertexShare, i), system.rotation, system.relativeDisplacements(i));
+			                system.topology.reference(i), stiffness, g.constants.thickness,
+			                massOf(system, vertexShare, i), system.rotation,
+			                system.relativeDisplacements(i));
 			growth[i].stiffening = std::sqrt(g.stiffening(i - g.begin));
 		}
 	}
@@ -53,7 +57,9 @@ SystemStableStep stableStep(const TriangleSystem& system, const std::vector<doub
 		else
 			candidates.push_back({ step, i, growth[i].stiffening });
 	}
-	std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.atLeast < b.atLeast; });
+	std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+		return a.atLeast < b.atLeast;
+	});
 	for (const Candidate& c : candidates) {
 		if (c.atLeast >= best.step) break;
 		const LawGroup& g   = system.groupOf(c.triangle);

@@ -7,9 +7,10 @@
 
 namespace yade::ddem {
 
-/** Sum of the tiles' own sums: neighbours are added in pairs, then neighbouring pairs, and so on; one left over goes up as it is.
- * The tree depends on the number of tiles alone. A domain that owns a run of tiles can hand over the sums of its largest complete
- * subtrees, so the total has the same bits for any division into domains and any number of threads.
+/** Sum of the tiles' own sums: neighbours are added in pairs, then neighbouring pairs, and so on; one left over goes
+ * up as it is. The tree depends on the number of tiles alone. A domain that owns a run of tiles can hand over the
+ * sums of its largest complete subtrees, so the total has the same bits for any division into domains
+ * and any number of threads.
  * Sum needs operator+= and a value-initialised zero. */
 template <class Sum> Sum treeSum(std::vector<Sum> sums)
 {

@@ -6,15 +6,19 @@
 
 namespace yade::ddem {
 
-/// Triangles of a tile. Fixed, so that no result depends on the number of threads; the state of a tile fits the level-2 cache.
+/// Triangles of a tile. Fixed, so that no result depends on the number of threads;
+/// the state of a tile fits the level-2 cache.
 constexpr std::size_t tileSize = 256;
 
-/// Triangles of the widest batch. The last tile of a group is filled up to whole batches with copies of its last triangle,
-/// so that every triangle is computed by the same instructions, whatever its place.
+/// Triangles of the widest batch. The last tile of a group is filled up to whole batches with copies of its last
+/// triangle, so that every triangle is computed by the same instructions, whatever its place.
 constexpr std::size_t widestBatch = 8;
 
 /// Rows that a tile of so many triangles has room for.
-constexpr std::size_t padded(std::size_t triangles) { return (triangles + widestBatch - 1) / widestBatch * widestBatch; }
+constexpr std::size_t padded(std::size_t triangles)
+{
+	return (triangles + widestBatch - 1) / widestBatch * widestBatch;
+}
 
 constexpr std::size_t tilesOf(std::size_t triangles) { return (triangles + tileSize - 1) / tileSize; }
 

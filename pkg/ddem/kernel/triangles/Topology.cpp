@@ -28,7 +28,8 @@ void Topology::connect(std::size_t nodes)
 	cornerStart.assign(nodes + 1, 0);
 	for (const auto& list : vertex)
 		for (const std::int32_t v : list) {
-			if (v < 0 || std::size_t(v) >= nodes) throw std::logic_error("Topology: node index out of range");
+			if (v < 0 || std::size_t(v) >= nodes)
+				throw std::logic_error("Topology: node index out of range");
 			cornerStart[std::size_t(v) + 1]++;
 		}
 	for (std::size_t v = 0; v < nodes; v++)

@@ -20,7 +20,8 @@ using CornerIndex = std::uint32_t;
 class Topology {
 public:
 	std::array<std::vector<std::int32_t>, 3> vertex; ///< node of corner e of every triangle, counter-clockwise
-	std::array<std::vector<double>, 4>       arm; ///< r_1x, r_1y, r_2x, r_2y of every triangle [m]; r_3 = −r_1 − r_2
+	std::array<std::vector<double>, 4>       arm; ///< r_1x, r_1y, r_2x, r_2y of every triangle [m];
+	                                              ///< r_3 = −r_1 − r_2
 
 	std::size_t triangles() const { return vertex[0].size(); }
 	std::size_t nodes() const { return cornerStart.empty() ? 0 : cornerStart.size() - 1; }
@@ -36,7 +37,10 @@ public:
 	{
 		return { corner.data() + cornerStart[node], corner.data() + cornerStart[node + 1] };
 	}
-	CornerIndex cornerIndex(std::size_t triangle, std::size_t e) const { return CornerIndex(e * triangles() + triangle); }
+	CornerIndex cornerIndex(std::size_t triangle, std::size_t e) const
+	{
+		return CornerIndex(e * triangles() + triangle);
+	}
 
 	TriangleReference<double> reference(std::size_t triangle) const
 	{

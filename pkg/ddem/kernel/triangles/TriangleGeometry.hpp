@@ -10,8 +10,8 @@ namespace yade::ddem {
 
 /** Stress-free geometry of a triangle, seen from its mass centre.
  *
- * Vertices are counter-clockwise. The lever arms r_e = X_e − X_i of eq. 1 sum to zero, so two of them and the thickness describe the whole element,
- * and the three sub-elements (centre, X_k, X_k+1) have the same area S/3.
+ * Vertices are counter-clockwise. The lever arms r_e = X_e − X_i of eq. 1 sum to zero, so two of them and the
+ * thickness describe the whole element, and the three sub-elements (centre, X_k, X_k+1) have the same area S/3.
  */
 template <class Number> struct TriangleReference {
 	std::array<PlaneVector<Number>, 3> arm; ///< r_e [m]
@@ -34,8 +34,9 @@ inline PlaneVector<double> centroid(const std::array<PlaneVector<double>, 3>& ve
 }
 
 /** Reference geometry from the vertices' stress-free positions [m].
- * \throws std::invalid_argument for coordinates that are not finite, for clockwise order, and for a triangle whose smallest height is less than 1e-10 of its
- * longest edge (its strain would be round-off). The message says which, with the coordinates.
+ * \throws std::invalid_argument for coordinates that are not finite, for clockwise order, and for a triangle whose
+ * smallest height is less than 1e-10 of its longest edge (its strain would be round-off).
+ * The message says which, with the coordinates.
  */
 TriangleReference<double> makeReference(const std::array<PlaneVector<double>, 3>& vertex);
 

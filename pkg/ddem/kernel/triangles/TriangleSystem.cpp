@@ -13,8 +13,10 @@ namespace yade::ddem {
 
 namespace {
 
-	using MovePoints = void (*)(Points&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
-	using MoveSpins  = void (*)(Spins&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
+	using MovePoints
+	        = void (*)(Points&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
+	using MoveSpins
+	        = void (*)(Spins&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
 
 	struct Movers {
 		MovePoints points;
@@ -48,7 +50,8 @@ void TriangleSystem::build()
 	for (std::size_t g = 0; g < group.size(); g++) {
 		LawGroup& own = *group[g];
 		if (own.state().triangles() != own.triangles())
-			throw std::logic_error("TriangleSystem: a group's states are not those of its triangles; start it first");
+			throw std::logic_error(
+			        "TriangleSystem: a group's states are not those of its triangles; start it first");
 		for (std::size_t t = 0; t < own.tiles(); t++) {
 			tile.push_back({ g, t });
 			tileStart.push_back(own.begin + t * tileSize);
@@ -105,12 +108,14 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 			MotionSums&       sum   = sums[std::size_t(j)];
 			const std::size_t begin = tileStart[std::size_t(j)], end = std::min(begin + tileSize, g.end);
 			g.advance(piece.inGroup, elements, settings.dt, sum.before);
-			move.points(motion.core, begin, end, settings, steps, sum); // a core feels only its own triangle
+			// a core feels only its own triangle
+			move.points(motion.core, begin, end, settings, steps, sum);
 			if (rotates) move.spins(motion.spin, begin, end, settings, steps, sum);
 		}
 #pragma omp for schedule(static)
 		for (std::ptrdiff_t j = 0; j < std::ptrdiff_t(nodeTiles); j++) {
-			const std::size_t begin = std::size_t(j) * Motion::nodesPerTile, end = std::min(begin + Motion::nodesPerTile, node.size());
+			const std::size_t begin = std::size_t(j) * Motion::nodesPerTile,
+			                  end = std::min(begin + Motion::nodesPerTile, node.size());
 			for (std::size_t v = begin; v < end; v++) {
 				double     x = 0, y = 0;
 				const auto corners = topology.corners(v);
@@ -132,7 +137,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 	double speedSquared = 0;
 	for (const auto& sum : sums)
 		speedSquared += sum.speedSquared;
-	if (!std::isfinite(speedSquared)) throw std::domain_error("a velocity of the deformable triangles is not finite");
+	if (!std::isfinite(speedSquared))
+		throw std::domain_error("a velocity of the deformable triangles is not finite");
 	if (settings.energy) return motion.closeBook(sums, tileStart, steps);
 	motion.dropBook();
 	return {};
@@ -153,7 +159,8 @@ PlaneRotation<double> TriangleSystem::frame(std::size_t i) const
 {
 	switch (rotation) {
 		case RotationTreatment::None: return FrameNone::rotation(topology.reference(i), fromCentre(i), 0.);
-		case RotationTreatment::Corotational: return FrameCorotational::rotation(topology.reference(i), fromCentre(i), 0.);
+		case RotationTreatment::Corotational:
+			return FrameCorotational::rotation(topology.reference(i), fromCentre(i), 0.);
 		default: return FrameCosserat::rotation(topology.reference(i), fromCentre(i), motion.spin.angle[i]);
 	}
 }

@@ -17,11 +17,12 @@ namespace yade::ddem {
 
 /** State of all deformable triangles, owner of their motion.
  *
- * A step computes element forces at the current positions and then moves cores and nodes by leapfrog, with the scheme of
- * NewtonIntegrator (velocities live at half steps); where the step changes, forces act for half of the last and half of the next, which
- * keeps it of second order; it should change seldom, since a step that alternates excites vibrations well below the bound on a constant
- * one. Forces on a node are gathered from its triangles' corners in a fixed order and sums go through a fixed tree over tiles, so
- * results do not depend on the number of threads, bit by bit.
+ * A step computes element forces at the current positions and then moves cores and nodes by leapfrog, with the scheme
+ * of NewtonIntegrator (velocities live at half steps); where the step changes, forces act for half of the last and
+ * half of the next, which keeps it of second order; it should change seldom, since a step that alternates excites
+ * vibrations well below the bound on a constant one. Forces on a node are gathered from its triangles' corners in
+ * a fixed order and sums go through a fixed tree over tiles, so results do not depend on the number of threads,
+ * bit by bit.
  */
 class TriangleSystem {
 public:
@@ -43,8 +44,8 @@ public:
 	RelativeDisplacements<double> relativeDisplacements(std::size_t triangle) const;
 	/// Strain of the three sub-elements in the element's frame at the current positions [-].
 	std::array<PlaneTensor, 3> strain(std::size_t triangle) const;
-	/// Stress of the three sub-elements in the element's frame at the current positions, for every law: what a step of dt [s] from the
-	/// state of the last step gives [Pa].
+	/// Stress of the three sub-elements in the element's frame at the current positions, for every law: what a step
+	/// of dt [s] from the state of the last step gives [Pa].
 	std::array<PlaneTensor, 3> stress(std::size_t triangle, double dt) const;
 	/// The same for a step as long as the last one.
 	std::array<PlaneTensor, 3> stress(std::size_t triangle) const { return stress(triangle, motion.lastTimeStep); }
@@ -52,7 +53,8 @@ public:
 	double frameAngle(std::size_t triangle) const;
 	/// Damage of the three sub-elements [-], 0 intact to 1; 0 where the law knows none.
 	std::array<double, 3> damage(std::size_t triangle) const;
-	/// The triangle whose vertices span the smallest part of its reference area [-]; zero or less: it is inside out.
+	/// The triangle whose vertices span the smallest part of its reference area [-];
+	/// zero or less: it is inside out.
 	struct Inverted {
 		std::size_t triangle = 0;
 		double      ratio    = 1;

@@ -7,8 +7,9 @@ namespace yade::ddem {
 FlowSolution<double> solveFlowByNewton(double n, double trial, double relaxation, double strength)
 {
 	if (!(trial > 0)) return { 0, 0 };
-	// y = x/trial in [0, 1] solves y + k y^n = 1; for n < 1 in terms of z = y^n, z^(1/n) + k z = 1, so that the power is above 1 and the function
-	// convex: Newton's method from the right of the root then descends to it monotonically.
+	// y = x/trial in [0, 1] solves y + k y^n = 1; for n < 1 in terms of z = y^n, z^(1/n) + k z = 1, so that the
+	// power is above 1 and the function convex: Newton's method from the right of the root then
+	// descends to it monotonically.
 	const double full = std::pow(trial / strength, n), k = relaxation / trial * full;
 	const bool   below = n < 1;
 	const double power = below ? 1 / n : n;
@@ -20,7 +21,8 @@ FlowSolution<double> solveFlowByNewton(double n, double trial, double relaxation
 		if (!(next < z)) break; // round-off reached
 		z = next;
 	}
-	return below ? FlowSolution<double> { trial * std::pow(z, power), full * z } : FlowSolution<double> { trial * z, full * std::pow(z, n) };
+	return below ? FlowSolution<double> { trial * std::pow(z, power), full * z }
+	             : FlowSolution<double> { trial * z, full * std::pow(z, n) };
 }
 
 } // namespace yade::ddem

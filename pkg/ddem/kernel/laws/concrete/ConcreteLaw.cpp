@@ -4,8 +4,14 @@
 
 namespace yade::ddem {
 
-double stiffnessFactor(const PreparedConcrete& concrete, const ConcreteState& state) { return tangentFactor(concrete, state.stiffening); }
+double stiffnessFactor(const PreparedConcrete& concrete, const ConcreteState& state)
+{
+	return tangentFactor(concrete, state.stiffening);
+}
 
-double damageRatio(const PreparedConcrete& concrete, const ConcreteState& state) { return 1 - measureDamage(concrete, state.damage).integrity; }
+double damageRatio(const PreparedConcrete& concrete, const ConcreteState& state)
+{
+	return 1 - measureDamage(concrete, state.damage).integrity;
+}
 
 } // namespace yade::ddem

@@ -8,8 +8,8 @@
 
 namespace yade::ddem {
 
-/// x^n for x ≥ 0 with n fixed when it is made. The exponents of Zubelewicz (2018) are recognised once, so that an evaluation costs a predicted
-/// branch instead of a general power.
+/// x^n for x ≥ 0 with n fixed when it is made. The exponents of Zubelewicz (2018) are recognised once, so that an
+/// evaluation costs a predicted branch instead of a general power.
 class Power {
 public:
 	explicit Power(double n);

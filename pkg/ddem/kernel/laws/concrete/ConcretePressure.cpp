@@ -7,7 +7,8 @@ namespace yade::ddem {
 double solveStiffening(double n, double a)
 {
 	if (!(a > 0)) return 0;
-	// in terms of l = ln s: l = n ln((1 + s) a); the difference has a slope 1 − n s/(1+s) between 1 − n and 1, so Newton's method converges from anywhere
+	// in terms of l = ln s: l = n ln((1 + s) a); the difference has a slope 1 − n s/(1+s) between 1 − n and 1, so
+	// Newton's method converges from anywhere
 	double l = n * std::log(a);
 	for (int iteration = 0; iteration < 100; ++iteration) {
 		const double s      = std::exp(l);

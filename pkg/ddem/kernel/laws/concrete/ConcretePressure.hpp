@@ -22,20 +22,24 @@ template <class Batch> inline Batch solveStiffening(double n, const Batch& a)
 	return Batch::load_aligned(lane);
 }
 
-/// Stiffening s = B/B_0 − 1 = μ/μ_0 − 1 = (p/p_EOS)^n_EOS [-], Zubelewicz (2018), section 3, from the pressure [Pa] that the elastic strain gives with the
-/// reference moduli; 0 in tension (a fractional power of a negative pressure does not exist).
-/// The pressure p itself is 1 + s times that one, so s = ((1 + s) a)^n with a = p_reference/p_EOS. Solving this makes the stress a function of the elastic
-/// strain alone: a factor taken from the step before lags behind the strain and feeds energy into every vibration. For n = 2/3 it is a cubic in
-/// (p/p_EOS)^(1/3), by Cardano.
-/// Limit: moduli that depend on pressure but not through an energy are not conservative. A closed cycle of shear and pressure gains or loses energy, either sign
-/// by its sense of rotation and none on average; in random cycles at 0.1 p_EOS up to an eighth of the largest stored energy a cycle.
-template <class Number> inline Number modulusStiffening(const PreparedConcrete& concrete, const Number& referencePressure)
+/// Stiffening s = B/B_0 − 1 = μ/μ_0 − 1 = (p/p_EOS)^n_EOS [-], Zubelewicz (2018), section 3, from the pressure [Pa]
+/// that the elastic strain gives with the reference moduli; 0 in tension (a fractional power of a negative
+/// pressure does not exist).
+/// The pressure p itself is 1 + s times that one, so s = ((1 + s) a)^n with a = p_reference/p_EOS. Solving this makes
+/// the stress a function of the elastic strain alone: a factor taken from the step before lags behind the strain and
+/// feeds energy into every vibration. For n = 2/3 it is a cubic in (p/p_EOS)^(1/3), by Cardano.
+/// Limit: moduli that depend on pressure but not through an energy are not conservative. A closed cycle of shear and
+/// pressure gains or loses energy, either sign by its sense of rotation and none on average; in random cycles at
+/// 0.1 p_EOS up to an eighth of the largest stored energy a cycle.
+template <class Number>
+inline Number modulusStiffening(const PreparedConcrete& concrete, const Number& referencePressure)
 {
 	using std::cbrt;
 	using std::max;
 	using std::sqrt;
 	const Number a = max(referencePressure, Number(0)) * concrete.perEosPressure;
-	if (concrete.eosPower.isTwoThirds()) { // y³ − a y² − a = 0 with y = (p/p_EOS)^(1/3); all terms positive, no cancellation
+	// y³ − a y² − a = 0 with y = (p/p_EOS)^(1/3); all terms positive, no cancellation
+	if (concrete.eosPower.isTwoThirds()) {
 		const Number third = (1. / 3) * a, cube = third * third * third;
 		const Number u = cbrt(0.5 * a + cube + sqrt(a * (0.25 * a + cube)));
 		const Number y = third + u + select(u > 0, third * third / u, Number(0));
@@ -45,8 +49,9 @@ template <class Number> inline Number modulusStiffening(const PreparedConcrete& 
 }
 
 /// Tangent bulk modulus over the reference one, ≥ 1, at a stiffening s: (1+s)²/(1+s−n s), above the secant factor 1+s.
-/// It bounds the tangent of pure changes of pressure. A change of pressure changes deviatoric stress as well, so that the tangent is not symmetric; under shear of the
-/// size of the pressure frequencies can be 7 % higher, with little pressure and much shear more. Flow keeps concrete from most such states.
+/// It bounds the tangent of pure changes of pressure. A change of pressure changes deviatoric stress as well, so that
+/// the tangent is not symmetric; under shear of the size of the pressure frequencies can be 7 % higher, with little
+/// pressure and much shear more. Flow keeps concrete from most such states.
 inline double tangentFactor(const PreparedConcrete& concrete, double stiffening)
 {
 	const double factor = 1 + stiffening;

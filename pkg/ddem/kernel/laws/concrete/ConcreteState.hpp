@@ -6,8 +6,8 @@
 
 namespace yade::ddem {
 
-/// State of one sub-element: plain numbers only, all zero at the start (`damage` may start at Ω_0, pre-existing defects).
-/// The energies are filled only where ConcreteEffects::Energy is on.
+/// State of one sub-element: plain numbers only, all zero at the start (`damage` may start at Ω_0, pre-existing
+/// defects). The energies are filled only where ConcreteEffects::Energy is on.
 template <class Number> struct ConcreteStateOf {
 	PlaneTensorOf<Number> stress;             ///< σ [Pa], tension positive
 	PlaneTensorOf<Number> strain;             ///< ε when the law was last evaluated [-]
@@ -15,17 +15,21 @@ template <class Number> struct ConcreteStateOf {
 	PlaneTensorOf<Number> plasticStrain;      ///< ε_p [-]
 	PlaneTensorOf<Number> damage;             ///< Ω [-], positive semi-definite
 	Number                stiffening;         ///< B/B_0 − 1 of the equation of state [-], ≥ 0
-	Number                closure;            ///< How closed its crack was in the last step [-], 0 (open) to 1 (closed)
+	Number                closure;            ///< How closed its crack was in the last step [-],
+	                                          ///< 0 (open) to 1 (closed)
 	Number                plasticDissipation; ///< Work of the stress on flow [J/m³]
-	Number                damageDissipation;  ///< Elastic energy released by damage and by cracks that close or open [J/m³]
-	Number                stiffeningEnergy;   ///< Stored energy beyond ½σ:ε_e, from the equation of state [J/m³]; below zero under pressure
+	Number                damageDissipation;  ///< Elastic energy released by damage and by cracks
+	                                          ///< that close or open [J/m³]
+	Number                stiffeningEnergy;   ///< Stored energy beyond ½σ:ε_e, from the equation of state [J/m³];
+	                                          ///< below zero under pressure
 };
 
 using ConcreteState = ConcreteStateOf<double>;
 
 /// Effects that a scene may leave out: E(switch of the material, its bit, doc string).
 #define CONCRETE_EFFECTS(E) \
-	E(viscoplasticFlow, ConcreteEffects::Flow, "Simulate viscoplastic flow (eqs. 5-7); off: elastic, and damage cannot grow.") \
+	E(viscoplasticFlow, ConcreteEffects::Flow, \
+	  "Simulate viscoplastic flow (eqs. 5-7); off: elastic, and damage cannot grow.") \
 	E(rateDependence, ConcreteEffects::Rate, \
 	  "Let the flow depend on the strain rate (eq. 7); off: as if :math:`\\omega_p` = 1.") \
 	E(damage, ConcreteEffects::Damage, "Simulate damage: growth (eq. 8), loss of strength and of stiffness.") \
