@@ -2,10 +2,11 @@
 """Speed of the plugin's engines beside YADE's own, measured in one run.
 
 Run:     scripts/ddem bench        (or: scripts/ddem run scripts/bench.py [--quick] [--triangles N …])
-Shows:   nanoseconds per triangle-step, per bond-step and per body-step of each engine, median of several repeats, on one thread unless OMP_NUM_THREADS says otherwise.
+Shows:   nanoseconds per triangle-step, per bond-step and per body-step of each engine, median of several repeats,
+         on one thread unless OMP_NUM_THREADS says otherwise.
 Takes:   about two minutes; --quick half a minute.
-Expect:  elastic triangles at a small multiple of memory speed, well below the 122-196 ns that the same bodies cost when NewtonIntegrator moves them; ratios between
-         rows hold from machine to machine, absolute times do not.
+Expect:  elastic triangles at a small multiple of memory speed, well below the 122-196 ns that the same bodies cost when
+         NewtonIntegrator moves them; ratios between rows hold from machine to machine, absolute times do not.
 """
 import argparse
 import statistics
@@ -15,8 +16,13 @@ import numpy as np
 from yade import ddem, timing
 
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-parser.add_argument("--triangles", type=int, nargs="+", default=[13000, 130000], help="sizes of the deformable samples (default: %(default)s)")
-parser.add_argument("--repeats", type=int, default=5, help="measurements of each row; the median is printed (default: %(default)s)")
+parser.add_argument(
+	"--triangles", type=int, nargs="+", default=[13000, 130000],
+	help="sizes of the deformable samples (default: %(default)s)"
+)
+parser.add_argument(
+	"--repeats", type=int, default=5, help="measurements of each row; the median is printed (default: %(default)s)"
+)
 parser.add_argument("--quick", action="store_true", help="small samples, few repeats")
 options = parser.parse_args(sys.argv[1:])
 if options.quick:
@@ -47,7 +53,9 @@ def deformable(count, material, rotation, energy=False):
 	O.reset()
 	O.materials.append(material)
 	cells = round((count / 8)**0.5)
-	block = ddem.append(ddem.mesh.rectangle(width=0.10, height=0.20, nx=cells, ny=2 * cells, pattern="crossed"), material)
+	block = ddem.append(
+		ddem.mesh.rectangle(width=0.10, height=0.20, nx=cells, ny=2 * cells, pattern="crossed"), material
+	)
 	block.hold(block.boundary("bottom"))
 	block.drive(block.boundary("top"), (0, -10))
 	# all of it is strained from the first step on: a law skips what is at rest
@@ -64,10 +72,17 @@ for size in options.triangles:
 	steps = max(20, 2_000_000 // size)
 	for rotation in ("none", "corotational", "cosserat"):
 		engine, count = deformable(size, DeformableElastMat(bulk=30e9, shear=26e9, density=2400), rotation)
-		row(f"DeformableEngine, elastic, rotation {rotation}", "triangles", count, measure(engine, count, steps))
+		row(
+			f"DeformableEngine, elastic, rotation {rotation}",
+			"triangles",
+			count,
+			measure(engine, count, steps),
+		)
 	O.engines = [O.engines[0], PyRunner(command="pass", iterPeriod=1), O.engines[1]]
 	row("whole step with an idle PyRunner, elastic, cosserat", "triangles", count, measure(None, count, steps))
-	engine, count = deformable(size, DeformableElastMat(bulk=30e9, shear=26e9, density=2400), "cosserat", energy=True)
+	engine, count = deformable(
+		size, DeformableElastMat(bulk=30e9, shear=26e9, density=2400), "cosserat", energy=True
+	)
 	row("DeformableEngine, elastic, cosserat, energy book", "triangles", count, measure(engine, count, steps))
 	engine, count = deformable(size, ConcreteDamageMat(), "cosserat")
 	row("DeformableEngine, concrete, cosserat", "triangles", count, measure(engine, count, max(20, steps // 5)))
@@ -84,28 +99,55 @@ for size in options.triangles:
 # bonds at rest: what is measured is the law of bonds that hold
 steps = 50 if options.quick else 200
 spheres = ddem.packing.prism(0.03, 0.06, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
-for convention, kind in (("consistent", BondedInteractionLoop), ("esys", BondedInteractionLoop), ("consistent", InteractionLoop)):
+for convention, kind in (
+	("consistent", BondedInteractionLoop),
+	("esys", BondedInteractionLoop),
+	("consistent", InteractionLoop),
+):
 	O.reset()
 	O.materials.append(BondedMat(label="rock", density=1e6))
 	sample = ddem.bonded.append(spheres, "rock")
 	O.engines = ddem.bonded.engines(convention=convention)
 	if kind is InteractionLoop:  # bonds one by one, through the functors
 		loop = O.engines[2]
-		O.engines = O.engines[:2] + [InteractionLoop(loop.geomDispatcher.functors, loop.physDispatcher.functors, loop.lawDispatcher.functors)] + O.engines[3:]
+		O.engines = (
+			O.engines[:2]
+			+ [
+				InteractionLoop(
+					loop.geomDispatcher.functors,
+					loop.physDispatcher.functors,
+					loop.lawDispatcher.functors,
+				)
+			]
+			+ O.engines[3:]
+		)
 	O.dt = 1e-9
-	row(f"{kind.__name__}, rigid bonds, {convention}", "bonds", len(sample.bonds), measure(O.engines[2], len(sample.bonds), steps))
+	row(
+		f"{kind.__name__}, rigid bonds, {convention}",
+		"bonds",
+		len(sample.bonds),
+		measure(O.engines[2], len(sample.bonds), steps),
+	)
 	if convention == "consistent" and kind is BondedInteractionLoop:
 		row("whole step of bonded spheres", "spheres", len(sample), measure(None, len(sample), steps))
 
 O.reset()
-O.materials.append(JCFpmMat(young=1e11, poisson=0.2, cohesion=1e9, tensileStrength=1e9, frictionAngle=0.7, density=2600))
+O.materials.append(
+	JCFpmMat(young=1e11, poisson=0.2, cohesion=1e9, tensileStrength=1e9, frictionAngle=0.7, density=2600)
+)
 for centre, radius in zip(spheres.centres, spheres.radii):
 	O.bodies.append(utils.sphere(centre, radius))
 loop = InteractionLoop(
-	[Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.01)], [Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
+	[Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.01)],
+	[Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1)],
 	[Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM()]
 )
-O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.01)]), loop, NewtonIntegrator()]
+O.engines = [
+	ForceResetter(),
+	InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.01)]),
+	loop,
+	NewtonIntegrator(),
+]
 O.dt = 1e-9
 O.run(1, True)
 count = O.interactions.countReal()

@@ -1,26 +1,36 @@
 # GPL v2 or later, see LICENSE.
-"""Calibrate a model: find the parameters of bonds, or of concrete, with which a small specimen has the wanted Young's modulus and strengths.
+"""Calibrate a model: find the parameters of bonds, or of concrete, with which a small specimen has the wanted Young's
+modulus and strengths.
 
-Run:      scripts/ddem run scripts/calibrate.py --young 40e9 --ucs 60e6                               (bonded spheres: half a minute on two cores)
-          scripts/ddem run scripts/calibrate.py --young 40e9 --ucs 60e6 --tensile 24e6 0.05           (also the bonds' friction angle: two minutes)
-          scripts/ddem run scripts/calibrate.py --model deformable --young 30e9 --ucs 50e6            (triangles of concrete: half a minute)
+Run:      scripts/ddem run scripts/calibrate.py --young 40e9 --ucs 60e6
+              (bonded spheres: half a minute on two cores)
+          scripts/ddem run scripts/calibrate.py --young 40e9 --ucs 60e6 --tensile 24e6 0.05
+              (also the bonds' friction angle: two minutes)
+          scripts/ddem run scripts/calibrate.py --model deformable --young 30e9 --ucs 50e6
+              (triangles of concrete: half a minute)
           scripts/ddem run scripts/calibrate.py --specimen block --young 54e9 --ucs 71e6 --seeds 1 2 3
-          scripts/ddem run scripts/calibrate.py --help                                                (all options)
-Writes:   a line a point and a table here, and out/calibrate/calibration.html, calibration.json, and evaluations.jsonl with every evaluation.
+          scripts/ddem run scripts/calibrate.py --help
+              (all options)
+Writes:   a line a point and a table here, and out/calibrate/calibration.html, calibration.json,
+          and evaluations.jsonl with every evaluation.
 
-        targets ──> start by scaling laws ──> virtual tests ──> all within tolerance? ── yes ──> parameters, sensitivities, line to paste
-                                                   ^                     | no
-                                                   └─ response surface <─┘      a plane through the logarithms of all points
+        targets ──> start by scaling laws ──> virtual tests ──> all within tolerance? ── yes ──> parameters,
+                                                   ^                     | no                    sensitivities,
+                                                   └─ response surface <─┘                       line to paste
+                                       (a plane through the logarithms of all points)
 
-Each evaluation is a compression (or tension) test of the specimen in a YADE of its own, several at the same time. Ctrl-C loses nothing that was finished:
-the same command goes on from there, and other targets for the same specimen use what is known; another build of the plugin measures anew. Exit code: 0 the
-targets are met, 1 they are not (the nearest is shown, and what stopped the search), 2 wrong options, 130 interrupted.
+Each evaluation is a compression (or tension) test of the specimen in a YADE of its own, several at the same time.
+Ctrl-C loses nothing that was finished: the same command goes on from there, and other targets for the same specimen use
+what is known; another build of the plugin measures anew. Exit code: 0 the targets are met, 1 they are not (the nearest
+is shown, and what stopped the search), 2 wrong options, 130 interrupted.
 
-Expect:   Spheres, 40 GPa and 60 MPa: five tests, E = 30.4 GPa and C = 42 MPa; the prism's modulus is proportional to E, its strength to C. A strength scatters
-          by 1.7 % between neighbouring cohesions, so a tolerance below 2 % needs several --seeds. Strengths in compression and tension fall together with the
-          friction angle: their ratio is 2.0 at 15°, 2.8 at 45°, 3.2 at 70° (3.7 with a low tensileStrength), so that of rock, 10 and more, is out of
-          reach of these bonds, and --tensile 6e6 says so. With --tensile 24e6: 25° and 29 MPa. Triangles, 30 GPa and 50 MPa: five tests, young = 34.8 GPa and
-          strength = 94.9 MPa; --tensile 6e6 beside it is met with friction = 0.68.
+Expect:   Spheres, 40 GPa and 60 MPa: five tests, E = 30.4 GPa and C = 42 MPa; the prism's modulus is proportional to E,
+          its strength to C. A strength scatters by 1.7 % between neighbouring cohesions, so a tolerance below 2 % needs
+          several --seeds. Strengths in compression and tension fall together with the friction angle: their ratio is
+          2.0 at 15°, 2.8 at 45°, 3.2 at 70° (3.7 with a low tensileStrength), so that of rock, 10 and more, is out of
+          reach of these bonds, and --tensile 6e6 says so. With --tensile 24e6: 25° and 29 MPa. Triangles, 30 GPa and
+          50 MPa: five tests, young = 34.8 GPa and strength = 94.9 MPa;
+          --tensile 6e6 beside it is met with friction = 0.68.
 """
 import argparse
 import os
@@ -52,14 +62,20 @@ def main():
 		setup, targets, tuned, fixed, evaluate = prepare(options)
 		require_writable(parser, "--out", options.out)
 		tests = virtualtest.cases([t.name for t in targets], options.seeds)
-		bench = Bench(evaluate, tests, evaluate.settings(), os.path.join(options.out, "evaluations.jsonl"), options.jobs, options.budget)
+		bench = Bench(
+			evaluate, tests, evaluate.settings(), os.path.join(options.out, "evaluations.jsonl"),
+			options.jobs, options.budget
+		)
 		progress = Progress(options.model, tuned, targets, lambda line: print(line, flush=True))
 		calibration = Calibration(tuned, targets, bench, options.step, options.sensitivities, progress)
 	except (ValueError, OSError, RuntimeError) as error:
 		parser.error(str(error))
 	with bench:
 		for number, reason in bench.store.unreadable:
-			print(f"{bench.store.path}, line {number} is not readable ({reason}); its evaluation is made again")
+			print(
+				f"{bench.store.path}, line {number} is not readable ({reason}); its evaluation is "
+				"made again"
+			)
 		print(introduction(options, bench))
 		progress.header()
 		try:
@@ -78,8 +94,10 @@ def interrupt(*_):
 def prepare(options):
 	"""Specimen, targets, parameters to tune, fixed ones, and what evaluates; ValueError before anything runs."""
 	changes = {
-		"radii": options.radii and tuple(options.radii), "fails": options.fails, "size": options.size, "density": options.density, "velocity": options.velocity,
-		"tension_velocity": options.tension_velocity, "ramp": options.ramp, "strain": options.strain, "stop": options.stop, "safety": options.safety,
+		"radii": options.radii and tuple(options.radii), "fails": options.fails, "size": options.size,
+		"density": options.density, "velocity": options.velocity,
+		"tension_velocity": options.tension_velocity, "ramp": options.ramp, "strain": options.strain,
+		"stop": options.stop, "safety": options.safety,
 		"viscosity": options.viscosity, "wall_factor": options.wall_factor, "convention": options.convention
 	}
 	setup = virtualtest.Setup.standard(options.model, options.specimen, **changes)
@@ -89,7 +107,10 @@ def prepare(options):
 	targets = []
 	for name, value in wanted.items():
 		if len(value) > 2:
-			raise ValueError(f"--{name} takes a value and, if it has one of its own, a tolerance; got {' '.join(f'{v:g}' for v in value)}")
+			raise ValueError(
+				f"--{name} takes a value and, if it has one of its own, a tolerance; "
+				f"got {' '.join(f'{v:g}' for v in value)}"
+			)
 		targets.append(Target(name, value[0], value[1] if len(value) == 2 else options.tolerance))
 
 	if not options.step > 0:
@@ -105,12 +126,22 @@ def prepare(options):
 	for option, pairs in (("--start", options.start), ("--bounds", options.bounds)):
 		for name in pairs:
 			if name not in names:
-				raise ValueError(f"{option} {name}: it is not tuned; tuned are {', '.join(names)} (see --tune; --set keeps a parameter at a value)")
+				raise ValueError(
+					f"{option} {name}: it is not tuned; tuned are {', '.join(names)} (see --tune; "
+					"--set keeps a parameter at a value)"
+				)
 	for name in given:
 		if name in names:
-			raise ValueError(f"--set {name}: it is tuned, so it cannot be kept at a value; --start says where to begin")
+			raise ValueError(
+				f"--set {name}: it is tuned, so it cannot be kept at a value; --start says where to "
+				"begin"
+			)
 	tuned = parameters(options.model, names, start, options.bounds)
-	stated = [name for name in STATED[options.model] if not (name in ("young", "poisson") and {"bulk", "shear"} & {*names, *given})]
+	stated = [
+		name
+		for name in STATED[options.model]
+		if not (name in ("young", "poisson") and {"bulk", "shear"} & {*names, *given})
+	]
 	fixed = {**{name: material[name] for name in stated}, **given}
 	if {"bulk", "shear"} & {*names, *given}:
 		fixed.update((name, fixed.get(name, material[name])) for name in ("bulk", "shear"))
@@ -126,80 +157,170 @@ def prepare(options):
 def read_options():
 	"""Options from the command line, and the parser, which complains."""
 	parser = argparse.ArgumentParser(
-		prog="scripts/ddem run scripts/calibrate.py", usage="%(prog)s [options]",
-		description="Find the parameters with which a small specimen has the wanted Young's modulus and strengths.",
-		formatter_class=argparse.ArgumentDefaultsHelpFormatter, allow_abbrev=False,
-		epilog="SI units: Pa, m, s, m/s, rad. Attributes are those of BondedMat and ConcreteDamageMat. Evaluations that were made with the same settings are "
-		"taken from DIR/evaluations.jsonl, whatever the targets."
+		prog="scripts/ddem run scripts/calibrate.py",
+		usage="%(prog)s [options]",
+		description=(
+			"Find the parameters with which a small specimen has the wanted "
+			"Young's modulus and strengths."
+		),
+		formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+		allow_abbrev=False,
+		epilog=(
+			"SI units: Pa, m, s, m/s, rad. Attributes are those of BondedMat and ConcreteDamageMat. "
+			"Evaluations that were made with the same settings are taken from DIR/evaluations.jsonl, "
+			"whatever the targets."
+		),
 	)
 	aim = parser.add_argument_group("targets (any of them)")
-	for name, what in (("young", "Young's modulus"), ("ucs", "strength in compression"), ("tensile", "strength in tension, positive")):
+	for name, what in (
+		("young", "Young's modulus"),
+		("ucs", "strength in compression"),
+		("tensile", "strength in tension, positive"),
+	):
 		aim.add_argument(
 			f"--{name}", type=positive, nargs="+", default=SUPPRESS, metavar=("PA", "TOLERANCE"),
 			help=f"{what} [Pa], and a relative tolerance of its own"
 		)
-	aim.add_argument("--tolerance", type=share, default=0.02, metavar="PART", help="relative tolerance of targets without one of their own")
+	aim.add_argument(
+		"--tolerance", type=share, default=0.02, metavar="PART",
+		help="relative tolerance of targets without one of their own"
+	)
 	model = parser.add_argument_group("model")
-	model.add_argument("--model", choices=tuple(TUNABLES), default="rigid", help="bonded spheres or deformable triangles of concrete")
 	model.add_argument(
-		"--tune", nargs="+", default=SUPPRESS, metavar="NAME",
-		help="attributes of the material to tune. rigid: " + ", ".join(TUNABLES["rigid"]) + "; deformable: " + ", ".join(TUNABLES["deformable"]) +
-		" (default: young for --young; cohesion or strength for --ucs; bondFrictionAngle or friction for --tensile beside it)"
+		"--model",
+		choices=tuple(TUNABLES),
+		default="rigid",
+		help="bonded spheres or deformable triangles of concrete",
 	)
 	model.add_argument(
-		"--set", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE", help="any other attributes of the material, kept as given"
+		"--tune",
+		nargs="+",
+		default=SUPPRESS,
+		metavar="NAME",
+		help="attributes of the material to tune. rigid: "
+		+ ", ".join(TUNABLES["rigid"])
+		+ "; deformable: "
+		+ ", ".join(TUNABLES["deformable"])
+		+ (
+			" (default: young for --young; cohesion or strength for --ucs; bondFrictionAngle or friction "
+			"for --tensile beside it)"
+		),
 	)
 	model.add_argument(
-		"--start", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE", help="where to begin, instead of by scaling laws"
+		"--set", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE",
+		help="any other attributes of the material, kept as given"
 	)
 	model.add_argument(
-		"--bounds", type=interval, nargs="+", default=SUPPRESS, metavar="NAME=LOW:HIGH",
-		help="how far a tuned attribute may go; by default a twentieth and twenty times the start, for angles and pure numbers their sensible range"
+		"--start", type=assignment, nargs="+", default=SUPPRESS, metavar="NAME=VALUE",
+		help="where to begin, instead of by scaling laws"
 	)
-	model.add_argument("--convention", choices=("consistent", "esys"), default="consistent", help="of rigid bonds: conservative, or ESyS-Particle's own")
+	model.add_argument(
+		"--bounds",
+		type=interval,
+		nargs="+",
+		default=SUPPRESS,
+		metavar="NAME=LOW:HIGH",
+		help=(
+			"how far a tuned attribute may go; by default a twentieth and twenty times the start, for "
+			"angles and pure numbers their sensible range"
+		),
+	)
+	model.add_argument(
+		"--convention",
+		choices=("consistent", "esys"),
+		default="consistent",
+		help="of rigid bonds: conservative, or ESyS-Particle's own",
+	)
 	sample = parser.add_argument_group("specimen (default: that of --specimen)")
 	sample.add_argument(
-		"--specimen", choices=tuple(virtualtest.SPECIMENS), default=SUPPRESS,
-		help="prism: 10 x 20 x 10 mm, smooth ends, of spheres; block: 100 x 200 x 20 mm in plane strain, rough ends, that of ucs_compare.py (default: prism "
-		"for rigid, block for deformable)"
+		"--specimen",
+		choices=tuple(virtualtest.SPECIMENS),
+		default=SUPPRESS,
+		help=(
+			"prism: 10 x 20 x 10 mm, smooth ends, of spheres; block: 100 x 200 x 20 mm in plane strain, "
+			"rough ends, that of ucs_compare.py (default: prism for rigid, block for deformable)"
+		),
 	)
 	sample.add_argument(
 		"--radii", type=positive, nargs=2, default=SUPPRESS, metavar=("MIN", "MAX"),
 		help="range of the spheres' radii [m] (prism: 0.0004 0.002, block: 0.002 0.005)"
 	)
-	sample.add_argument("--fails", type=count, default=1000, metavar="N", help="the packing of spheres is finished when so many in a row found no place")
-	sample.add_argument("--size", type=positive, default=SUPPRESS, metavar="M", help="size of the triangles' mesh [m] (block: 0.005)")
-	sample.add_argument("--density", type=positive, default=2400.0, metavar="KG/M3", help="of the specimen as a whole")
 	sample.add_argument(
-		"--seeds", type=seed, nargs="+", default=[1], metavar="N", help="draw packing, mesh and fracture energies; measures are means over several seeds"
+		"--fails", type=count, default=1000, metavar="N",
+		help="the packing of spheres is finished when so many in a row found no place"
+	)
+	sample.add_argument(
+		"--size", type=positive, default=SUPPRESS, metavar="M",
+		help="size of the triangles' mesh [m] (block: 0.005)"
+	)
+	sample.add_argument(
+		"--density", type=positive, default=2400.0, metavar="KG/M3", help="of the specimen as a whole"
+	)
+	sample.add_argument(
+		"--seeds", type=seed, nargs="+", default=[1], metavar="N",
+		help="draw packing, mesh and fracture energies; measures are means over several seeds"
 	)
 	test = parser.add_argument_group("tests")
 	test.add_argument(
-		"--velocity", type=positive, default=SUPPRESS, metavar="M/S", help="speed of each platen in compression (prism: 0.125, block: 1)"
+		"--velocity", type=positive, default=SUPPRESS, metavar="M/S",
+		help="speed of each platen in compression (prism: 0.125, block: 1)"
 	)
-	test.add_argument("--tension-velocity", type=positive, default=SUPPRESS, metavar="M/S", help="the same in tension (default: a quarter of it)")
 	test.add_argument(
-		"--ramp", type=not_negative, default=SUPPRESS, metavar="S", help="time over which the platens reach their speed [s] (prism: 2e-5, block: 1e-4)"
+		"--tension-velocity", type=positive, default=SUPPRESS, metavar="M/S",
+		help="the same in tension (default: a quarter of it)"
+	)
+	test.add_argument(
+		"--ramp", type=not_negative, default=SUPPRESS, metavar="S",
+		help="time over which the platens reach their speed [s] (prism: 2e-5, block: 1e-4)"
 	)
 	test.add_argument(
 		"--strain", type=positive, default=0.01, metavar="E",
-		help="largest strain in compression, half of it in tension; a specimen that has not failed there is an evaluation that failed"
+		help=(
+			"largest strain in compression, half of it in tension; a specimen that has not failed there "
+			"is an evaluation that failed"
+		)
 	)
-	test.add_argument("--stop", type=share, default=0.7, metavar="PART", help="a test ends when the stress stays below this part of the peak")
-	test.add_argument("--safety", type=share, default=0.8, metavar="PART", help="time step, as a part of the critical one")
-	test.add_argument("--viscosity", type=not_negative, default=0.0, metavar="1/S", help="damping of the spheres; ESyS-Particle's tutorial has 2")
-	test.add_argument("--wall-factor", type=positive, default=10.0, metavar="F", help="stiffness of the platens of spheres over Young's modulus of the bonds")
+	test.add_argument(
+		"--stop", type=share, default=0.7, metavar="PART",
+		help="a test ends when the stress stays below this part of the peak"
+	)
+	test.add_argument(
+		"--safety", type=share, default=0.8, metavar="PART", help="time step, as a part of the critical one"
+	)
+	test.add_argument(
+		"--viscosity", type=not_negative, default=0.0, metavar="1/S",
+		help="damping of the spheres; ESyS-Particle's tutorial has 2"
+	)
+	test.add_argument(
+		"--wall-factor", type=positive, default=10.0, metavar="F",
+		help="stiffness of the platens of spheres over Young's modulus of the bonds"
+	)
 	search = parser.add_argument_group("search")
-	search.add_argument("--jobs", type=count, default=os.cpu_count(), metavar="N", help="evaluations at the same time")
+	search.add_argument(
+		"--jobs", type=count, default=os.cpu_count(), metavar="N", help="evaluations at the same time"
+	)
 	search.add_argument("--budget", type=count, default=60, metavar="N", help="no more new evaluations than this")
-	search.add_argument("--step", type=share, default=0.08, metavar="PART", help="of finite differences, above the noise of breaking bonds")
+	search.add_argument(
+		"--step", type=share, default=0.08, metavar="PART",
+		help="of finite differences, above the noise of breaking bonds"
+	)
 	search.add_argument(
 		"--sensitivities", action=argparse.BooleanOptionalAction, default=True,
 		help="measure them in the end where the search did not do so nearby, a point a parameter"
 	)
 	output = parser.add_argument_group("output")
-	output.add_argument("--out", default=os.path.join("out", "calibrate"), metavar="DIR", help="folder for all files, made when missing")
-	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
+	output.add_argument(
+		"--out",
+		default=os.path.join("out", "calibrate"),
+		metavar="DIR",
+		help="folder for all files, made when missing",
+	)
+	output.add_argument(
+		"--pictures",
+		action=argparse.BooleanOptionalAction,
+		default=True,
+		help="pictures, in the report and as PNG files",
+	)
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
 	options = parser.parse_args()
 	provenance.begin(vars(options))
@@ -237,17 +358,25 @@ def kinds(bench):
 
 def introduction(options, bench):
 	seeds = f", mean of {len(options.seeds)} seeds" if len(options.seeds) > 1 else ""
-	return f"Calibration of the {options.model} model on a {options.specimen}: {kinds(bench)}{seeds}; {bench.jobs} at the same time.\n"
+	return (
+		f"Calibration of the {options.model} model on a {options.specimen}: {kinds(bench)}{seeds}; "
+		f"{bench.jobs} at the same time.\n"
+	)
 
 
 def write_report(options, setup, fixed, outcome, bench):
 	values = {**fixed, **(outcome.best.values if outcome.best else {})}
 	order = [name for name in (*TUNABLES[options.model], *values) if name in values]
-	material = material_line(options.model, {name: values[name] for name in dict.fromkeys(order)}, setup.density) if outcome.best else ""
+	material = (
+		material_line(options.model, {name: values[name] for name in dict.fromkeys(order)}, setup.density)
+		if outcome.best
+		else ""
+	)
 	particles = "bonded spheres" if options.model == "rigid" else "deformable triangles of concrete"
 	title = f"Calibration of {particles}: a {options.specimen} in {kinds(bench)}"
 	report = CalibrationReport(
-		outcome, bench, options.model, options.out, title, material, rows(options, setup, fixed), commandline.command(), commandline.plain(options),
+		outcome, bench, options.model, options.out, title, material, rows(options, setup, fixed),
+		commandline.command(), commandline.plain(options),
 		versions(), notes(setup), options.pictures, options.pdf
 	)
 	page = report.write()
@@ -259,34 +388,75 @@ def rows(options, setup, fixed):
 	"""What the report says about specimen and tests."""
 	size = f"{1e3 * setup.width:g} × {1e3 * setup.height:g} × {1e3 * setup.depth:g} mm"
 	ends = "held laterally (rough)" if setup.rough else "free to slide (smooth)"
-	made = [("specimen", f"{options.specimen}, {size}", f"width, height, depth; ends {ends}; density {setup.density:g} kg/m³")]
+	made = [
+		(
+			"specimen",
+			f"{options.specimen}, {size}",
+			f"width, height, depth; ends {ends}; density {setup.density:g} kg/m³",
+		)
+	]
 	if setup.model == "rigid":
 		plane = "; front and back layers held out of plane" if setup.held else ""
 		made.append(
-			("spheres", f"radii {1e3 * setup.radii[0]:g} to {1e3 * setup.radii[1]:g} mm", f"packed until {setup.fails} insertions in a row failed{plane}")
+			(
+				"spheres",
+				f"radii {1e3 * setup.radii[0]:g} to {1e3 * setup.radii[1]:g} mm",
+				f"packed until {setup.fails} insertions in a row failed{plane}",
+			)
 		)
 		made.append(("bonds", setup.convention, "convention"))
 	else:
-		made.append(("triangles", f"size {1e3 * setup.size:g} mm", f"{setup.mesh} mesh, rotation {setup.rotation}; fracture energies drawn for each"))
+		made.append(
+			(
+				"triangles",
+				f"size {1e3 * setup.size:g} mm",
+				f"{setup.mesh} mesh, rotation {setup.rotation}; fracture energies drawn for each",
+			)
+		)
 	for name, value in fixed.items():
 		quantity = TUNABLES[setup.model].get(name)
-		made.append((name, quantity.shown(value) if quantity else f"{value:g}", (quantity.meaning + "; " if quantity else "") + "not tuned"))
-	made.append((
-		"platens", f"{setup.velocity:g} m/s", f"speed of each in compression, {setup.tension_velocity:g} m/s in tension, reached after {1e6 * setup.ramp:g} µs"
-	))
+		made.append(
+			(
+				name,
+				quantity.shown(value) if quantity else f"{value:g}",
+				(quantity.meaning + "; " if quantity else "") + "not tuned",
+			)
+		)
+	made.append(
+		(
+			"platens",
+			f"{setup.velocity:g} m/s",
+			(
+				f"speed of each in compression, {setup.tension_velocity:g} m/s in tension, reached "
+				f"after {1e6 * setup.ramp:g} µs"
+			),
+		)
+	)
 	made.append(("time step", f"{setup.safety:g}", "of the critical one"))
-	made.append(("seeds", ", ".join(map(str, options.seeds)), "of packing, mesh and fracture energies; measures are means over them"))
+	made.append(
+		(
+			"seeds",
+			", ".join(map(str, options.seeds)),
+			"of packing, mesh and fracture energies; measures are means over them",
+		)
+	)
 	return made
 
 
 def notes(setup):
 	rate = 2 * setup.velocity / setup.height
 	said = [
-		f"The parameters belong to this specimen and rate ({rate:g} /s in compression, {2 * setup.tension_velocity / setup.height:g} /s in tension): strength "
-		"changes with the number and size of particles, and with the rate."
+		(
+			f"The parameters belong to this specimen and rate ({rate:g} /s in compression, "
+			f"{2 * setup.tension_velocity / setup.height:g} /s in tension): strength changes with the "
+			"number and size of particles, and with the rate."
+		)
 	]
 	if setup.held or setup.model == "deformable":
-		said.append("In plane strain the slope exceeds the uniaxial Young's modulus by 1/(1 − ν²) in an elastic material.")
+		said.append(
+			"In plane strain the slope exceeds the uniaxial Young's modulus by 1/(1 − ν²) in an elastic "
+			"material."
+		)
 	return said
 
 

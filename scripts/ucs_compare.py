@@ -3,19 +3,22 @@
 
 Run:      scripts/ddem run scripts/ucs_compare.py                     (half a minute; --preset full: five minutes)
           scripts/ddem run scripts/ucs_compare.py --help              (all options)
-Writes:   a table here, and out/ucs_compare/report.html with pictures, summary.json, a CSV of each test, and ParaView files.
+Writes:   a table here, and out/ucs_compare/report.html with pictures, summary.json, a CSV of each test,
+          and ParaView files.
 
-        v |            A block 10 cm wide, 20 cm tall and 2 cm thick stands between two platens that move towards each other. The ends
-     ===========       cannot slide (rough platens), nothing moves out of the plane (plane strain), as in Zubelewicz (2018), section 4.3.
-     |         |       Triangles are plane strain by nature. The spheres fill a prism as deep as the triangles are thick, whose front and
-     |         |       back layers are held out of plane: two diameters of the largest sphere or more, so that bonds form a network in
-     |         |       space, and thin enough for cracks to run through it from front to back.
-     |         |       Stress is (F_top + F_bottom)/2A, strain the approach of the platens over the height (eqs. 9-11 of the tests of
-     ===========       rigid particles after Weatherley et al.); strength is the largest stress, Young's modulus the slope from 20 % to 60 % of it.
-        v ^
+        v |            A block 10 cm wide, 20 cm tall and 2 cm thick stands between two platens that move towards each
+     ===========       other. The ends cannot slide (rough platens), nothing moves out of the plane (plane strain),
+     |         |       as in Zubelewicz (2018), section 4.3. Triangles are plane strain by nature. The spheres fill
+     |         |       a prism as deep as the triangles are thick, whose front and back layers are held out of plane:
+     |         |       two diameters of the largest sphere or more, so that bonds form a network in space, and thin
+     |         |       enough for cracks to run through it from front to back.
+     ===========       Stress is (F_top + F_bottom)/2A, strain the approach of the platens over the height (eqs. 9-11 of
+        v ^            the tests of rigid particles after Weatherley et al.); strength is the largest stress, Young's
+                       modulus the slope from 20 % to 60 % of it.
 
-Expect:   both models peak near 71 MPa at about 0.15 % strain, with a slope of 54 GPa. Two inclined bands of damage cross the block and leave intact wedges
-          below the platens. The spheres lose their strength within half the strain that the triangles take, and two fifths of their bonds break.
+Expect:   both models peak near 71 MPa at about 0.15 % strain, with a slope of 54 GPa. Two inclined bands of damage
+          cross the block and leave intact wedges below the platens. The spheres lose their strength within half the
+          strain that the triangles take, and two fifths of their bonds break.
           The triangles have Zubelewicz's Tables 1 and 2 untouched; the bonds were matched to them (see BONDS).
 """
 import argparse
@@ -35,10 +38,11 @@ WIDTH, HEIGHT = 0.10, 0.20  # [m]
 DENSITY = 2400  # of the concrete [kg/m³]
 REBAR = ddem.mesh.box(0.043, 0.093, 0.057, 0.107)  # 1.4 cm x 1.4 cm in the middle [m]
 
-# Bonds that make the rigid block the same concrete: Young's modulus sets its stiffness, cohesion its strength. Matched by hand, correcting both in
-# proportion to what was missed until strength and Young's modulus of both blocks agreed within 2 % (seed 1, the other options as below); with other seeds
-# the rigid block scatters by 5 to 10 %. They belong to these radii and this velocity: the strength of bonded spheres changes with their number, that of the
-# triangles with the strain rate. Poisson's ratio, the strain at the peak and the softening were not matched.
+# Bonds that make the rigid block the same concrete: Young's modulus sets its stiffness, cohesion its strength. Matched
+# by hand, correcting both in proportion to what was missed until strength and Young's modulus of both blocks agreed
+# within 2 % (seed 1, the other options as below); with other seeds the rigid block scatters by 5 to 10 %. They belong
+# to these radii and this velocity: the strength of bonded spheres changes with their number, that of the triangles with
+# the strain rate. Poisson's ratio, the strain at the peak and the softening were not matched.
 BONDS = {"poisson": 0.2, "bondFrictionAngle": math.radians(45), "frictionStatic": 0.6, "frictionDynamic": 0.4}
 PRESETS = {
 	"quick": {"size": 0.003, "radii": (0.002, 0.005), "bonds": (110.6e9, 100e6)},
@@ -50,7 +54,8 @@ def main():
 	options = read_options()
 	runs = [crush(model, options) for model in options.models]
 	report = Report(
-		runs, options.out, title(runs), settings=settings(options), command=commandline.command(O.numThreads), options=commandline.plain(options),
+		runs, options.out, title(runs), settings=settings(options), command=commandline.command(O.numThreads),
+		options=commandline.plain(options),
 		versions=versions(), notes=notes(options), pictures=options.pictures, pdf=options.pdf
 	)
 	page = report.write()
@@ -62,11 +67,19 @@ def main():
 
 def rigid_test(options):
 	"""Rigid spheres, bonded; of a density that gives the block that of the concrete."""
-	packing = ddem.packing.prism(WIDTH, HEIGHT, options.depth, *options.radii, seed=options.seed, fails=options.fails)
+	packing = ddem.packing.prism(
+		WIDTH, HEIGHT, options.depth, *options.radii, seed=options.seed, fails=options.fails
+	)
 	young, cohesion = options.bonds
-	O.materials.append(BondedMat(label="bonds", young=young, cohesion=cohesion, density=DENSITY / packing.solid_fraction, **BONDS))
+	O.materials.append(
+		BondedMat(
+			label="bonds", young=young, cohesion=cohesion, density=DENSITY / packing.solid_fraction, **BONDS
+		)
+	)
 	sample = ddem.bonded.append(packing, "bonds")
-	platens = ddem.bonded.platens(sample, options.velocity, options.ramp, stiffness=10 * young, both=options.drive == "both")
+	platens = ddem.bonded.platens(
+		sample, options.velocity, options.ramp, stiffness=10 * young, both=options.drive == "both"
+	)
 	hold(sample, packing, axis=2, dof="z")
 	if options.ends == "rough":
 		hold(sample, packing, axis=1, dof="x")
@@ -74,12 +87,31 @@ def rigid_test(options):
 	critical = ddem.bonded.critical_time_step()
 	O.dt = options.safety * critical
 	smallest, largest = (1e3 * radius for radius in options.radii)
-	return platens, critical, [
-		("spheres", number(len(sample)), f"radii {smallest:g} to {largest:g} mm, {100 * packing.solid_fraction:.1f} % of the block's volume"),
-		("bonds", number(sample.initial_bonds), f"{2 * sample.initial_bonds / len(sample):.1f} a sphere"),
-		*parameter_tables.rows(O.materials["bonds"], parameter_tables.BONDED),
-		("ρ", f"{O.materials['bonds'].density:.4g} kg/m³", "density of the spheres: the block as a whole has that of the concrete"),
-	]
+	return (
+		platens,
+		critical,
+		[
+			(
+				"spheres",
+				number(len(sample)),
+				(
+					f"radii {smallest:g} to {largest:g} mm, {100 * packing.solid_fraction:.1f} % "
+					"of the block's volume"
+				),
+			),
+			(
+				"bonds",
+				number(sample.initial_bonds),
+				f"{2 * sample.initial_bonds / len(sample):.1f} a sphere",
+			),
+			*parameter_tables.rows(O.materials["bonds"], parameter_tables.BONDED),
+			(
+				"ρ",
+				f"{O.materials['bonds'].density:.4g} kg/m³",
+				"density of the spheres: the block as a whole has that of the concrete",
+			),
+		],
+	)
 
 
 def deformable_test(options):
@@ -89,18 +121,42 @@ def deformable_test(options):
 	O.materials.append(DeformableElastMat(label="steel", bulk=151e9, shear=81e9, density=8030))
 	extra = {"seed": options.seed} if options.mesh == "unstructured" else {}
 	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, options.size, pattern=options.mesh, regions=regions, **extra)
-	block = ddem.append(mesh, {"": "concrete", **dict.fromkeys(regions, "steel")}, seed=options.seed, thickness=options.depth)
-	platens = ddem.platens(block, options.velocity, options.ramp, lateral="fixed" if options.ends == "rough" else "free", both=options.drive == "both")
-	O.engines = [ForceResetter(), *platens.engines, DeformableTimeStepper(safety=options.safety), DeformableEngine(rotation=options.rotation, label="triangles")]
+	block = ddem.append(
+		mesh, {"": "concrete", **dict.fromkeys(regions, "steel")}, seed=options.seed, thickness=options.depth
+	)
+	platens = ddem.platens(
+		block, options.velocity, options.ramp, lateral="fixed" if options.ends == "rough" else "free",
+		both=options.drive == "both"
+	)
+	O.engines = [
+		ForceResetter(),
+		*platens.engines,
+		DeformableTimeStepper(safety=options.safety),
+		DeformableEngine(rotation=options.rotation, label="triangles"),
+	]
 	critical = O.engines[-1].criticalTimeStep()
 	O.dt = options.safety * critical
-	quality = f"{options.mesh} mesh of size {1e3 * options.size:g} mm, {number(len(mesh.nodes))} nodes, smallest angle {mesh.angles.min():.0f}°"
-	return platens, critical, [
-		("triangles", number(len(mesh.triangles)), quality),
-		("rotation", options.rotation, "treatment of the particles' rotation"),
-		*parameter_tables.rows(O.materials["concrete"], parameter_tables.CONCRETE),
-		("spread of G_f", "0.8 G_f", "standard deviation of the triangles' fracture energies, drawn from a normal distribution, not below 0.2 G_f"),
-	]
+	quality = (
+		f"{options.mesh} mesh of size {1e3 * options.size:g} mm, {number(len(mesh.nodes))} nodes, smallest "
+		f"angle {mesh.angles.min():.0f}°"
+	)
+	return (
+		platens,
+		critical,
+		[
+			("triangles", number(len(mesh.triangles)), quality),
+			("rotation", options.rotation, "treatment of the particles' rotation"),
+			*parameter_tables.rows(O.materials["concrete"], parameter_tables.CONCRETE),
+			(
+				"spread of G_f",
+				"0.8 G_f",
+				(
+					"standard deviation of the triangles' fracture energies, drawn from a normal "
+					"distribution, not below 0.2 G_f"
+				),
+			),
+		],
+	)
 
 
 def hold(sample, packing, axis, dof):
@@ -122,7 +178,10 @@ def crush(model, options):
 	test = uniaxial.CompressionTest(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
-	run.setup, run.parameters = setup, [*parameters, ("time step", f"{1e6 * run.dt:.3g} µs", f"{options.safety:g} of the critical one")]
+	run.setup, run.parameters = (
+		setup,
+		[*parameters, ("time step", f"{1e6 * run.dt:.3g} µs", f"{options.safety:g} of the critical one")],
+	)
 	return run
 
 
@@ -136,51 +195,145 @@ def read_options():
 	preset = PRESETS.get(first.parse_known_args()[0].preset, PRESETS["quick"])
 
 	parser = argparse.ArgumentParser(
-		prog="scripts/ddem run scripts/ucs_compare.py", usage="%(prog)s [options]",
-		description="Crush the same block of concrete twice, made of rigid bonded spheres and of deformable triangles, and report.",
-		formatter_class=argparse.ArgumentDefaultsHelpFormatter, allow_abbrev=False,
-		epilog="Lengths in m, times in s, speeds in m/s. The same options and seed give the same result, bit by bit: the triangles on any number of threads, the "
-		"spheres on one thread (the launcher's default; scripts/ddem run --threads N for more)."
+		prog="scripts/ddem run scripts/ucs_compare.py",
+		usage="%(prog)s [options]",
+		description=(
+			"Crush the same block of concrete twice, made of rigid bonded spheres and of deformable "
+			"triangles, and report."
+		),
+		formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+		allow_abbrev=False,
+		epilog=(
+			"Lengths in m, times in s, speeds in m/s. The same options and seed give the same result, bit "
+			"by bit: the triangles on any number of threads, the spheres on one thread (the launcher's "
+			"default; scripts/ddem run --threads N for more)."
+		),
 	)
 	run = parser.add_argument_group("run")
-	run.add_argument("--preset", choices=PRESETS, default="quick", help="sizes and speed: quick takes about half a minute, full about five")
-	run.add_argument("--models", type=models, default="rigid,deformable", metavar="LIST", help="which models to crush, in this order: rigid, deformable or both")
-	run.add_argument("--seed", type=seed, default=1, help="draws the packing, the irregular mesh and the fracture energies")
-	run.add_argument("--out", default=os.path.join("out", "ucs_compare"), metavar="DIR", help="folder for all files, made when missing; older files are replaced")
+	run.add_argument(
+		"--preset",
+		choices=PRESETS,
+		default="quick",
+		help="sizes and speed: quick takes about half a minute, full about five",
+	)
+	run.add_argument(
+		"--models", type=models, default="rigid,deformable", metavar="LIST",
+		help="which models to crush, in this order: rigid, deformable or both"
+	)
+	run.add_argument(
+		"--seed", type=seed, default=1, help="draws the packing, the irregular mesh and the fracture energies"
+	)
+	run.add_argument(
+		"--out",
+		default=os.path.join("out", "ucs_compare"),
+		metavar="DIR",
+		help="folder for all files, made when missing; older files are replaced",
+	)
 	test = parser.add_argument_group("test")
-	test.add_argument("--velocity", type=positive, default=1.0, metavar="M/S", help="speed of each platen [m/s]; Zubelewicz's 4.3 has 10 m/s at the top only")
-	test.add_argument("--ramp", type=not_negative, default=1e-4, metavar="S", help="time over which the platens reach their speed [s]; 0: they hit the block")
+	test.add_argument(
+		"--velocity", type=positive, default=1.0, metavar="M/S",
+		help="speed of each platen [m/s]; Zubelewicz's 4.3 has 10 m/s at the top only"
+	)
+	test.add_argument(
+		"--ramp", type=not_negative, default=1e-4, metavar="S",
+		help="time over which the platens reach their speed [s]; 0: they hit the block"
+	)
 	test.add_argument("--drive", choices=("both", "top"), default="both", help="which platens move")
-	test.add_argument("--ends", choices=("rough", "smooth"), default="rough", help="rough platens hold the ends laterally, smooth ones let them slide")
-	test.add_argument("--strain", type=positive, default=0.01, metavar="E", help="largest strain [-], at full speed; the test ends there at the latest")
-	test.add_argument("--stop", type=share, default=0.2, metavar="PART", help="the test ends when the stress stays below this part of the peak; 0: never")
-	test.add_argument("--safety", type=share, default=0.8, metavar="PART", help="time step, as a part of the critical one")
+	test.add_argument(
+		"--ends",
+		choices=("rough", "smooth"),
+		default="rough",
+		help="rough platens hold the ends laterally, smooth ones let them slide",
+	)
+	test.add_argument(
+		"--strain", type=positive, default=0.01, metavar="E",
+		help="largest strain [-], at full speed; the test ends there at the latest"
+	)
+	test.add_argument(
+		"--stop", type=share, default=0.2, metavar="PART",
+		help="the test ends when the stress stays below this part of the peak; 0: never"
+	)
+	test.add_argument(
+		"--safety", type=share, default=0.8, metavar="PART", help="time step, as a part of the critical one"
+	)
 	sample = parser.add_argument_group("sample")
-	sample.add_argument("--size", type=positive, default=preset["size"], metavar="M", help="size of the triangles' mesh [m]")
-	sample.add_argument("--mesh", choices=ddem.mesh.generate.PATTERNS, default="unstructured", help="pattern of the mesh; Zubelewicz's is crossed, of 0.01 m")
-	sample.add_argument("--rotation", choices=("cosserat", "corotational", "none"), default="cosserat", help="how triangles follow rotation: with one of their "
-		"own and a stiffness against it, by the frame of their deformation, or not at all (small rotations)")
-	sample.add_argument("--rebar", action="store_true", help="a steel rebar of 1.4 cm x 1.4 cm in the middle of the deformable block; the bonded block has none")
-	sample.add_argument("--radii", type=positive, nargs=2, default=preset["radii"], metavar=("MIN", "MAX"), help="range of the spheres' radii [m]")
-	sample.add_argument("--bonds", type=positive, nargs=2, default=preset["bonds"], metavar=("E", "C"), help="Young's modulus and cohesion of the bonds [Pa], "
-		"matched to the triangles for the other defaults")
-	sample.add_argument("--depth", type=positive, default=0.02, metavar="M", help="thickness of the block out of plane [m], at least twice the largest diameter")
-	sample.add_argument("--fails", type=count, default=1000, metavar="N", help="the packing of spheres is finished when so many in a row found no place")
+	sample.add_argument(
+		"--size", type=positive, default=preset["size"], metavar="M", help="size of the triangles' mesh [m]"
+	)
+	sample.add_argument(
+		"--mesh",
+		choices=ddem.mesh.generate.PATTERNS,
+		default="unstructured",
+		help="pattern of the mesh; Zubelewicz's is crossed, of 0.01 m",
+	)
+	sample.add_argument(
+		"--rotation",
+		choices=("cosserat", "corotational", "none"),
+		default="cosserat",
+		help="how triangles follow rotation: with one of their "
+		"own and a stiffness against it, by the frame of their deformation, or not at all (small rotations)",
+	)
+	sample.add_argument(
+		"--rebar",
+		action="store_true",
+		help=(
+			"a steel rebar of 1.4 cm x 1.4 cm in the middle of the deformable block; the bonded block has "
+			"none"
+		),
+	)
+	sample.add_argument(
+		"--radii", type=positive, nargs=2, default=preset["radii"], metavar=("MIN", "MAX"),
+		help="range of the spheres' radii [m]"
+	)
+	sample.add_argument(
+		"--bonds",
+		type=positive,
+		nargs=2,
+		default=preset["bonds"],
+		metavar=("E", "C"),
+		help="Young's modulus and cohesion of the bonds [Pa], matched to the triangles for the other defaults",
+	)
+	sample.add_argument(
+		"--depth", type=positive, default=0.02, metavar="M",
+		help="thickness of the block out of plane [m], at least twice the largest diameter"
+	)
+	sample.add_argument(
+		"--fails", type=count, default=1000, metavar="N",
+		help="the packing of spheres is finished when so many in a row found no place"
+	)
 	output = parser.add_argument_group("output")
 	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
-	output.add_argument("--pictures", action=argparse.BooleanOptionalAction, default=True, help="pictures, in the report and as PNG files")
+	output.add_argument(
+		"--pictures",
+		action=argparse.BooleanOptionalAction,
+		default=True,
+		help="pictures, in the report and as PNG files",
+	)
 	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
-	output.add_argument("--progress", action=argparse.BooleanOptionalAction, default=True, help="progress bars, where the terminal can show them")
+	output.add_argument(
+		"--progress",
+		action=argparse.BooleanOptionalAction,
+		default=True,
+		help="progress bars, where the terminal can show them",
+	)
 	options = parser.parse_args()
 	provenance.begin(vars(options))
 
 	smallest, largest = options.radii
 	if smallest > largest:
-		parser.error(f"argument --radii: the smallest radius, {smallest:g} m, is above the largest, {largest:g} m")
+		parser.error(
+			f"argument --radii: the smallest radius, {smallest:g} m, is above the largest, {largest:g} m"
+		)
 	if options.depth < 4 * largest:
-		parser.error(f"argument --depth: {options.depth:g} m is less than two diameters of the largest sphere, {4 * largest:g} m; use smaller --radii or more depth")
+		parser.error(
+			f"argument --depth: {options.depth:g} m is less than two diameters of the largest sphere, "
+			f"{4 * largest:g} m; use smaller --radii or more depth"
+		)
 	if options.size > WIDTH / 4:
-		parser.error(f"argument --size: {options.size:g} m is more than a quarter of the block's width of {WIDTH:g} m")
+		parser.error(
+			f"argument --size: {options.size:g} m is more than a quarter of the block's width of "
+			f"{WIDTH:g} m"
+		)
 	require_writable(parser, "--out", options.out)
 	return options
 
@@ -201,10 +354,18 @@ def title(runs):
 def settings(options):
 	moving = "each platen" if options.drive == "both" else "the top platen, the bottom stands"
 	return [
-		("block", f"{1e3 * WIDTH:g} × {1e3 * HEIGHT:g} × {1e3 * options.depth:g} mm", "width, height, thickness; plane strain"),
+		(
+			"block",
+			f"{1e3 * WIDTH:g} × {1e3 * HEIGHT:g} × {1e3 * options.depth:g} mm",
+			"width, height, thickness; plane strain",
+		),
 		("platens", f"{options.velocity:g} m/s", f"speed of {moving}, reached after {1e6 * options.ramp:g} µs"),
 		("ends", options.ends, "rough: held laterally; smooth: free to slide"),
-		("end of the test", f"{100 * options.stop:g} % of the peak", f"or a strain of {100 * options.strain:g} %"),
+		(
+			"end of the test",
+			f"{100 * options.stop:g} % of the peak",
+			f"or a strain of {100 * options.strain:g} %",
+		),
 		("seed", options.seed, "of packing, mesh and fracture energies"),
 	]
 
@@ -213,15 +374,26 @@ def notes(options):
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	waves = 5191  # plane-strain compression wave of the concrete, sqrt((B + 4/3 mu)/rho) [m/s]
 	return [
-		f"Rate. The platens approach at {closing:g} m/s, a strain rate of {closing / HEIGHT:g} /s; the tests of bonded spheres of Weatherley et al. have 12.5 /s, "
-		f"Zubelewicz's impact 50 /s. A compression wave needs {1e6 * HEIGHT / waves:.0f} µs through the block, in which the strain grows by "
-		f"{100 * closing / waves:.3f} %. The strength of the concrete grows with the rate, and so does the inertia of the block: triangles of 5 mm reach 59, 64, 71 "
-		"and 87 MPa with platens of 0.25, 0.5, 1 and 2 m/s.",
-		"Bonds. Young's modulus and cohesion of the bonds were matched by hand, so that strength and Young's modulus of the rigid block agree with those of the "
-		"deformable one for the options of the preset and seed 1. Strain at the peak, softening and pattern of damage were not matched: they are what the "
-		"comparison shows. With other seeds the rigid block scatters by 5 to 10 %; with other radii or velocities the bonds need to be matched again.",
-		"Plane strain. Triangles are in plane strain by nature. The front and back layers of the spheres are held out of plane, and the prism is at least two "
-		"diameters of the largest sphere deep, so that bonds form a network in space.",
+		(
+			f"Rate. The platens approach at {closing:g} m/s, a strain rate of {closing / HEIGHT:g} /s; "
+			"the tests of bonded spheres of Weatherley et al. have 12.5 /s, Zubelewicz's impact 50 /s. "
+			f"A compression wave needs {1e6 * HEIGHT / waves:.0f} µs through the block, in which the "
+			f"strain grows by {100 * closing / waves:.3f} %. The strength of the concrete grows with the "
+			"rate, and so does the inertia of the block: triangles of 5 mm reach 59, 64, 71 and 87 MPa "
+			"with platens of 0.25, 0.5, 1 and 2 m/s."
+		),
+		(
+			"Bonds. Young's modulus and cohesion of the bonds were matched by hand, so that strength and "
+			"Young's modulus of the rigid block agree with those of the deformable one for the options of "
+			"the preset and seed 1. Strain at the peak, softening and pattern of damage were not matched: "
+			"they are what the comparison shows. With other seeds the rigid block scatters by 5 to 10 %; "
+			"with other radii or velocities the bonds need to be matched again."
+		),
+		(
+			"Plane strain. Triangles are in plane strain by nature. The front and back layers of the "
+			"spheres are held out of plane, and the prism is at least two diameters of the largest sphere "
+			"deep, so that bonds form a network in space."
+		),
 	]
 
 

@@ -1,15 +1,17 @@
 # GPL v2 or later, see LICENSE.
 # needs: freefem++
-"""See deformable triangles and the concrete law hold: cases with exact, published or independent solutions, each with its error and tolerance.
+"""See deformable triangles and the concrete law hold: cases with exact, published or independent solutions,
+each with its error and tolerance.
 
 Run:      scripts/ddem run scripts/verify.py                                (the quick cases: some 40 s)
           scripts/ddem run scripts/verify.py --all --report out/verify      (all cases, and a page with pictures)
           scripts/ddem run scripts/verify.py --list                         (what there is)
           scripts/ddem run scripts/verify.py --case kirsch cantilever       (some)
-Writes:   a table here; with --json FILE a list of {case, quantity, value, reference, error, tolerance, passed, source, wall_s}; with --report DIR
-          DIR/verification.html, which holds everything, and its pictures as files.
-Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A case is a small file in py/ddem/verification/cases, which reads as an
-          example and says what it shows, where its reference comes from and what to expect.
+Writes:   a table here; with --json FILE a list of {case, quantity, value, reference, error, tolerance, passed, source,
+          wall_s}; with --report DIR DIR/verification.html, which holds everything, and its pictures as files.
+Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A case is a small file in
+          py/ddem/verification/cases, which reads as an example and says what it shows,
+          where its reference comes from and what to expect.
 """
 import argparse
 import os
@@ -37,7 +39,10 @@ def main():
 		plain = [record.plain() for record in records]
 		provenance.write_json(options.json, plain, indent=2, ensure_ascii=False, allow_nan=False)
 	failed = [result.case.name for result in results if not result.passed]
-	print(f"{sum(record.passed for record in records)} of {len(records)} checks passed, {len(results)} cases, {sum(result.wall for result in results):.0f} s")
+	print(
+		f"{sum(record.passed for record in records)} of {len(records)} checks passed, {len(results)} cases, "
+		f"{sum(result.wall for result in results):.0f} s"
+	)
 	if failed:
 		print(f"FAILED: {', '.join(failed)}")
 	if options.report:
@@ -51,22 +56,33 @@ def read_options():
 	parser = argparse.ArgumentParser(
 		prog="scripts/ddem run scripts/verify.py",
 		usage="%(prog)s [--list | --case NAME … | --all] [--json FILE] [--report DIR]",
-		description="Run verification cases: each compares a result with a reference whose source is named. Without --case and --all: those that take seconds.",
+		description=(
+			"Run verification cases: each compares a result with a reference whose source is named. "
+			"Without --case and --all: those that take seconds."
+		),
 		allow_abbrev=False,
-		epilog="The exit code is 0 when every check passed, 1 when one failed, 2 for a wrong call."
+		epilog="The exit code is 0 when every check passed, 1 when one failed, 2 for a wrong call.",
 	)
 	which = parser.add_mutually_exclusive_group()
 	which.add_argument("--list", action="store_true", help="name the cases, and run none")
 	which.add_argument("--case", nargs="+", action="extend", metavar="NAME", help="run these cases")
 	which.add_argument("--all", action="store_true", help="run the slow cases as well")
 	parser.add_argument("--json", metavar="FILE", help="write all comparisons into a file")
-	parser.add_argument("--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing")
+	parser.add_argument(
+		"--report", metavar="DIR", help="write a page with tables and pictures into a folder, made when missing"
+	)
 	options = parser.parse_args()
 	provenance.begin(vars(options))
 	if options.list and (options.json or options.report):
-		parser.error("argument --list: runs no case, so there is nothing for --json or --report; leave out one of them")
+		parser.error(
+			"argument --list: runs no case, so there is nothing for --json or --report; leave out one of "
+			"them"
+		)
 	if options.json and os.path.isdir(options.json):
-		parser.error(f"argument --json: {options.json} is a folder; name a file, such as {os.path.join(options.json, 'verification.json')}")
+		parser.error(
+			f"argument --json: {options.json} is a folder; name a file, such as "
+			f"{os.path.join(options.json, 'verification.json')}"
+		)
 	try:
 		if options.case:
 			options.cases = [verification.find(name) for name in dict.fromkeys(options.case)]
@@ -97,7 +113,8 @@ def print_result(result):
 	for record in result.records:
 		mark = "ok    " if record.passed else "FAILED"
 		print(
-			f"  {mark} {record.quantity:<58} {record.value:>13.6g}   reference {record.reference:>13.6g}   error {record.error:.1e} of {record.tolerance:.1e}"
+			f"  {mark} {record.quantity:<58} {record.value:>13.6g}   reference {record.reference:>13.6g}   "
+			f"error {record.error:.1e} of {record.tolerance:.1e}"
 		)
 	if result.error:
 		print(result.error)

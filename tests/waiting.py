@@ -24,6 +24,7 @@ class BackgroundRun:
 		return set(os.listdir("/proc/self/task"))
 
 	def pause(self):
-		"""O.pause(), and wait for the end of the step in hand, as O.wait() does not: its thread ends with it."""
+		"""O.pause(), and wait for the end of the step in hand, as O.wait() does not:
+		its thread ends with it."""
 		self._scene.pause()
 		until(lambda: self._threads() <= self._before)

@@ -8,8 +8,8 @@ Append a mesh of deformable triangles and load it::
 	O.materials.append(ConcreteDamageMat(label="concrete"))
 	block = ddem.append(ddem.mesh.rectangle(width=0.10, height=0.20, size=0.01), "concrete", seed=1)
 	platens = ddem.platens(block, velocity=10, ramp=20e-6)
-	O.engines = [ForceResetter(), DeformableTimeStepper()] + platens.engines + [DeformableEngine(label="deformable")]
-	O.dt = ddem.time_step(0.8)
+	O.engines = [ForceResetter(),
+	DeformableTimeStepper()] + platens.engines + [DeformableEngine(label="deformable")] O.dt = ddem.time_step(0.8)
 	ddem.run(until=2e-4)
 	print(platens.stress, block.damage.mean())
 
@@ -31,7 +31,8 @@ outside YADE.
 from . import mesh
 from ._lazy import lazy
 
-# Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library that it does not call for.
+# Loaded when first used, so that meshes and material points need no YADE, and a scene loads no plotting library
+# that it does not call for.
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
 	"Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation",

@@ -16,18 +16,22 @@ from .field import Field
 def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
 	"""Append the mesh to the scene as nodes and deformable triangles.
 
-	:param mesh: a :class:`mesh.Mesh`; it is checked and renumbered for memory locality first (see :attr:`Block.mesh`).
-	:param materials: a material or its label, or a dict from region name to either; region "" is the rest. Materials must be in O.materials.
-	:param seed: draws the fracture energy of every concrete triangle from a normal distribution with mean G_f of its material, standard deviation
-		*spread* G_f, not below *floor* G_f (Zubelewicz 2018, section 4.3). None: all have the material's G_f.
+	:param mesh: a :class:`mesh.Mesh`; it is checked and renumbered for memory locality first
+		(see :attr:`Block.mesh`).
+	:param materials: a material or its label, or a dict from region name to either; region "" is the rest.
+		Materials must be in O.materials.
+	:param seed: draws the fracture energy of every concrete triangle from a normal distribution with mean G_f of
+		its material, standard deviation *spread* G_f, not below *floor* G_f (Zubelewicz 2018, section 4.3).
+		None: all have the material's G_f.
 	:param thickness: of the plane-strain slice [m].
 	:param position: offset added to the mesh's coordinates [m].
-	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; once flow has localised, others get as much more or less as makes the
-		energy of a crack per area the same (see :mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
+	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; once flow has
+		localised, others get as much more or less as makes the energy of a crack per area the same (see
+		:mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
 	:returns: :class:`Block`
-	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another kind, thickness, seed, spread, floor, position or
-		crack_band out of range, or a crack_band where no material has a fracture energy. Nothing is appended
-		then.
+	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another
+		kind, thickness, seed, spread, floor, position or crack_band out of range, or a crack_band where
+		no material has a fracture energy. Nothing is appended then.
 	"""
 	mesh.validate()
 	mesh = mesh.reordered()
@@ -67,15 +71,21 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 
 
 def time_step(safety=0.8):
-	"""A stable time step [s] for the deformable triangles of the scene: *safety* times the rigorous bound of :yref:`DeformableEngine.criticalTimeStep`.
+	"""A stable time step [s] for the deformable triangles of the scene: *safety* times the rigorous bound of
+	:yref:`DeformableEngine.criticalTimeStep`.
 
-	Works before O.engines is set (then with a DeformableEngine's defaults). The bound follows from the largest frequency of the stiffest element alone, so it needs no
-	safety against the mesh; the rest below 1 is for stress stiffening and for accuracy.
+	Works before O.engines is set (then with a DeformableEngine's defaults). The bound follows from the largest
+	frequency of the stiffest element alone, so it needs no safety against the mesh;
+	the rest below 1 is for stress stiffening and for accuracy.
 	"""
 	if not 0 < safety <= 1:
-		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
+		raise ValueError(
+			f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use"
+		)
 	engines = [e for e in O.engines if isinstance(e, DeformableEngine)]
-	return safety * (min(e.criticalTimeStep() for e in engines) if engines else DeformableEngine().timeStepOfScene())
+	return safety * (
+		min(e.criticalTimeStep() for e in engines) if engines else DeformableEngine().timeStepOfScene()
+	)
 
 
 class Block:
@@ -239,8 +249,8 @@ class Block:
 		return Field(engine.values("damage")[rows].mean(axis=1), engine.values("tilePlace")[rows])
 
 	def field(self, name):
-		"""What the laws of the triangles remember, by its name (:yref:`DeformableEngine.fields`): (m, 3), or (m, 3, 4) in global axes for
-		tensors; zero where a triangle's law has no such field.
+		"""What the laws of the triangles remember, by its name (:yref:`DeformableEngine.fields`): (m, 3),
+		or (m, 3, 4) in global axes for tensors; zero where a triangle's law has no such field.
 
 		:raises ValueError: a name that no law of the sample has (naming those there are).
 		"""
@@ -248,7 +258,8 @@ class Block:
 
 	@property
 	def fields(self):
-		"""Names of what the laws of the engine's triangles remember, with unit and components: a list of tuples."""
+		"""Names of what the laws of the engine's triangles remember, with unit and components:
+		a list of tuples."""
 		return self._engine("fields").fields()
 
 	@property
@@ -279,13 +290,15 @@ class Block:
 		return self.node_ids[self.mesh.boundary(side)]
 
 	def hold(self, ids, dofs="xy"):
-		"""Hold the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity then stays as prescribed (0 unless set)."""
+		"""Hold the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity then
+		stays as prescribed (0 unless set)."""
 		for i in np.atleast_1d(BodyIds(ids)):
 			state = O.bodies[i].state
 			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | set(dofs)))
 
 	def drive(self, ids, velocity):
-		"""Prescribe the velocity (vx, vy) [m/s] of these nodes, None leaves a direction free; they are held in the prescribed directions."""
+		"""Prescribe the velocity (vx, vy) [m/s] of these nodes, None leaves a direction free;
+		they are held in the prescribed directions."""
 		for axis, value in enumerate(velocity):
 			if value is None:
 				continue
@@ -295,12 +308,16 @@ class Block:
 
 	# --- pictures
 	def plot(self, quantity, file=None, deformed=1.0, **options):
-		"""Draw a quantity of the triangles over the deformed sample: "damage", "rotation", "region", or an array with a value per triangle; see :func:`plots.field`."""
+		"""Draw a quantity of the triangles over the deformed sample: "damage", "rotation", "region", or an
+		array with a value per triangle; see :func:`plots.field`."""
 		from . import plots
 		labels = {"damage": "damage η/η_max [-]", "rotation": "rotation [rad]", "region": "region"}
 		if isinstance(quantity, str):
 			if quantity not in labels:
-				raise ValueError(f"plot('{quantity}') is unknown; there are {', '.join(labels)}, or give an array with a value per triangle")
+				raise ValueError(
+					f"plot('{quantity}') is unknown; there are {', '.join(labels)}, or give an "
+					"array with a value per triangle"
+				)
 			values = self.mesh.regions if quantity == "region" else getattr(self, quantity)
 			options.setdefault("label", labels[quantity])
 		else:
@@ -487,12 +504,18 @@ def _materials_by_region(mesh, materials):
 		materials = {name: materials for name in mesh.region_names}
 	unknown = set(materials) - set(mesh.region_names)
 	if unknown:
-		raise ValueError(f"materials name region {sorted(unknown)}, which the mesh does not have; its regions are {list(mesh.region_names)}")
+		raise ValueError(
+			f"materials name region {sorted(unknown)}, which the mesh does not have; its regions are "
+			f"{list(mesh.region_names)}"
+		)
 	found = []
 	for index, name in enumerate(mesh.region_names):
 		if name not in materials:
 			if (mesh.regions == index).any():
-				raise ValueError(f"region '{name}' of the mesh has no material; give materials={{'{name}': label, …}}")
+				raise ValueError(
+					f"region '{name}' of the mesh has no material; give materials={{'{name}': "
+					"label, …}"
+				)
 			found.append(None)
 			continue
 		material = materials[name]
@@ -500,11 +523,19 @@ def _materials_by_region(mesh, materials):
 			try:
 				material = O.materials[material]
 			except (KeyError, IndexError):
-				raise ValueError(f"region '{name}': O.materials has no material '{material}'; append it first") from None
+				raise ValueError(
+					f"region '{name}': O.materials has no material '{material}'; append it first"
+				) from None
 		if not isinstance(material, DeformableElastMat):
-			raise ValueError(f"region '{name}': deformable triangles need a DeformableElastMat or ConcreteDamageMat, not {type(material).__name__}")
+			raise ValueError(
+				f"region '{name}': deformable triangles need a DeformableElastMat or "
+				f"ConcreteDamageMat, not {type(material).__name__}"
+			)
 		if material.id < 0:
-			raise ValueError(f"region '{name}': the {type(material).__name__} '{material.label}' is not in O.materials; append it first")
+			raise ValueError(
+				f"region '{name}': the {type(material).__name__} '{material.label}' is not in "
+				"O.materials; append it first"
+			)
 		found.append(material)
 	return found
 
@@ -513,9 +544,15 @@ def _fracture_energies(mesh, by_region, seed, spread, floor):
 	factors = np.ones(len(mesh.triangles))
 	if seed is not None:
 		if not isinstance(seed, numbers.Integral) or seed < 0:
-			raise ValueError(f"seed = {seed!r} must be a whole number, 0 or more (or None: every triangle has its material's fracture energy)")
+			raise ValueError(
+				f"seed = {seed!r} must be a whole number, 0 or more (or None: every triangle has its "
+				"material's fracture energy)"
+			)
 		if not 0 <= spread < math.inf or not 0 < floor <= 1:
-			raise ValueError(f"spread = {spread} must be finite and not negative and floor = {floor} must lie in (0, 1], both as shares of the mean fracture energy")
+			raise ValueError(
+				f"spread = {spread} must be finite and not negative and floor = {floor} must lie in "
+				"(0, 1], both as shares of the mean fracture energy"
+			)
 		factors *= np.maximum(np.random.default_rng(seed).normal(1.0, spread, len(factors)), floor)
 	energies = np.full(len(mesh.triangles), -1.0)  # the material's own
 	if seed is None:

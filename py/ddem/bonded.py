@@ -31,9 +31,12 @@ import math
 import numpy as np
 
 from yade import (
-	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat, ElasticWallMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
-	NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils)
+	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat, ElasticWallMat, ForceResetter,
+	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
+	Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O,
+	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
+)
 
 from . import broken_bonds
 from .arrays import BodyIds, fixed
@@ -47,26 +50,42 @@ _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bo
 def append(packing, material, gap=None, color=None, mass_law="solid"):
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 
-	:param packing: :class:`packing.Packing`. One layer (:attr:`packing.Packing.flat`) stays in its plane: motion along z and rotation about x and y are blocked.
+	:param packing: :class:`packing.Packing`. One layer (:attr:`packing.Packing.flat`) stays in its plane: motion
+		along z and rotation about x and y are blocked.
 	:param material: a :yref:`BondedMat` of O.materials, or its label.
-	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds, or 0.0025 of the largest radius where it has none.
+	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds,
+		or 0.0025 of the largest radius where it has none.
 	:param color: of the spheres, three numbers from 0 to 1.
-	:param mass_law: "solid": density times volume, 4/3 pi r³; "cube": density times r³, the default of ESyS-Particle (with 1 g/mm³ = 1e6 kg/m³).
+	:param mass_law: "solid": density times volume, 4/3 pi r³; "cube":
+		density times r³, the default of ESyS-Particle (with 1 g/mm³ = 1e6 kg/m³).
 	:returns: :class:`BondedSample`
-	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative gap, nothing to bond. Nothing is appended then.
+	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative
+		gap, nothing to bond. Nothing is appended then.
 	"""
 	material = _material(material)
 	if mass_law not in ("solid", "cube"):
-		raise ValueError(f"mass_law = '{mass_law}' is unknown; use 'solid' (density times 4/3 pi r³) or 'cube' (density times r³)")
+		raise ValueError(
+			f"mass_law = '{mass_law}' is unknown; use 'solid' (density times 4/3 pi r³) or 'cube' "
+			"(density times r³)"
+		)
 	if gap is not None:
 		pairs = packing.neighbours(gap)
 	else:
-		pairs = packing.bonds if packing.bonds is not None else packing.neighbours(DEFAULT_GAP * packing.radii.max())
+		pairs = (
+			packing.bonds
+			if packing.bonds is not None
+			else packing.neighbours(DEFAULT_GAP * packing.radii.max())
+		)
 	for i, j in pairs:
 		if (packing.centres[i] == packing.centres[j]).all():
-			raise ValueError(f"spheres {i} and {j} of the packing have the same centre and cannot be bonded")
+			raise ValueError(
+				f"spheres {i} and {j} of the packing have the same centre and cannot be bonded"
+			)
 	if len(pairs) == 0:
-		raise ValueError(f"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the smallest radius is {packing.radii.min()} m)")
+		raise ValueError(
+			"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the "
+			f"smallest radius is {packing.radii.min()} m)"
+		)
 	spheres = []
 	for centre, radius in zip(packing.centres, packing.radii):
 		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
@@ -89,7 +108,8 @@ class BondedSample:
 
 	def __init__(self, ids, lower, upper, bonds):
 		self.ids = BodyIds(ids)  #: body ids of the spheres, see :class:`arrays.BodyIds`
-		self.lower, self.upper = np.array(lower, float), np.array(upper, float)  #: corners of the box at the start [m]
+		#: corners of the box at the start [m]
+		self.lower, self.upper = np.array(lower, float), np.array(upper, float)
 		self.initial_bonds = bonds  #: number of bonds at the start
 
 	@classmethod
@@ -148,7 +168,8 @@ class BondedSample:
 
 	@property
 	def bond_stresses(self):
-		"""Normal (tension positive) and shear stress (m, 2) [Pa] of the bonds that hold, in the order of :attr:`bonds`."""
+		"""Normal (tension positive) and shear stress (m, 2) [Pa] of the bonds that hold,
+		in the order of :attr:`bonds`."""
 		bonds = law().bonds()
 		return fixed(
 			np.column_stack([bonds["normalStress"], bonds["shearStress"]]).reshape(-1, 2)[
@@ -158,12 +179,16 @@ class BondedSample:
 
 	@property
 	def broken(self):
-		"""Broken bonds in the order in which they broke, a structured array: id1, id2, step, time [s], position and normal of the crack (3,) [m, -], radius [m],
-		mode ("tension" or "shear"), normal_stress and shear_stress when it broke [Pa], energy it lost [J]. YADE
-		takes ``int(record["id1"])`` as an id.
+		"""Broken bonds in the order in which they broke, a structured array: id1, id2, step, time [s], position
+		and normal of the crack (3,) [m, -], radius [m], mode ("tension" or "shear"), normal_stress and
+		shear_stress when it broke [Pa], energy it lost [J]. YADE takes ``int(record["id1"])`` as an id.
 		"""
 		records = [
-			(b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode, b.normalStress, b.shearStress, b.energy) for b in law().brokenBonds()
+			(
+				b.id1, b.id2, b.iter, b.time, tuple(b.pos), tuple(b.normal), b.radius, b.mode,
+				b.normalStress, b.shearStress, b.energy
+			)
+			for b in law().brokenBonds()
 		]
 		records = np.array(records, dtype=broken_bonds.DTYPE)
 		return fixed(records[self._mine(np.column_stack([records["id1"], records["id2"]]))])
@@ -195,21 +220,27 @@ class BondedSample:
 def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False, shear_stiffness=0.0):
 	"""Set elastic walls below and above a sample and drive them towards each other along y, or apart.
 
-	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face, and their area is that of the face.
+	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face,
+		and their area is that of the face.
 	:param velocity: speed of each wall [m/s], positive compresses, negative pulls (bonded walls only).
 	:param ramp: time over which the speed grows linearly from zero [s].
 	:param stiffness: of the walls, K [Pa]; a sphere of radius r feels the spring pi r K.
 	:param both: True: both walls move; False: the lower one stands still.
-	:param bonded: True: the spheres whose centre is within 1.1 of their radius from a wall are bonded to it, for good, and feel its spring in both directions.
-	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract. ESyS-Particle's NRotBondedWall has that of *stiffness*.
+	:param bonded: True: the spheres whose centre is within 1.1 of their radius from a wall are bonded to it, for
+		good, and feel its spring in both directions.
+	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract.
+		ESyS-Particle's NRotBondedWall has that of *stiffness*.
 	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
-	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not positive, no sphere at a wall that is to be bonded.
-		Nothing is appended then.
+	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not
+		positive, no sphere at a wall that is to be bonded. Nothing is appended then.
 	"""
 	if not math.isfinite(velocity) or velocity == 0:
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
 	if velocity < 0 and not bonded:
-		raise ValueError(f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses, and bonded=True makes walls that pull")
+		raise ValueError(
+			f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses, and "
+			"bonded=True makes walls that pull"
+		)
 	if not (ramp >= 0 and math.isfinite(ramp)):
 		raise ValueError(f"ramp = {ramp} s must not be negative")
 	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
@@ -218,9 +249,15 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 		heights, reach = sample.positions[:, 1], _GLUED * sample.radii
 		held = [sample.ids[abs(heights - face) < reach].tolist() for face in (sample.lower[1], sample.upper[1])]
 		if not all(held):
-			raise ValueError(f"no sphere is within {_GLUED} radii of the {'upper' if held[0] else 'lower'} face of the sample: nothing to bond the wall to")
+			raise ValueError(
+				f"no sphere is within {_GLUED} radii of the {'upper' if held[0] else 'lower'} face of "
+				"the sample: nothing to bond the wall to"
+			)
 	O.materials.append(material)
-	bottom, top = (utils.wall(float(face), axis=1, sense=sense, material=material) for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1)))
+	bottom, top = (
+		utils.wall(float(face), axis=1, sense=sense, material=material)
+		for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1))
+	)
 	bottom, top = O.bodies.append([bottom, top])
 	for wall, spheres in zip((bottom, top), held):
 		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
@@ -228,14 +265,21 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 
 
 class Platens:
-	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11). Compression is positive."""
+	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11).
+	Compression is positive."""
 
 	def __init__(self, sample, bottom, top, velocity, ramp, both):
 		self.sample = sample
 		self.bottom, self.top = bottom, top  #: body ids of the walls
-		self.engines = [RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)]
+		self.engines = [
+			RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)
+		]
 		if both:
-			self.engines.append(RampedTranslationEngine(ids=[bottom], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp))
+			self.engines.append(
+				RampedTranslationEngine(
+					ids=[bottom], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp
+				)
+			)
 		width, self.height, depth = sample.upper - sample.lower
 		self.area = float(width * depth)  #: of the loaded face [m²]
 
@@ -266,20 +310,27 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	:param platens: :class:`Platens` whose motion is included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
-	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle 2.3.5, to compare with it, see
-		:yref:`Law2_ScGeom_BondedPhys_MohrCoulomb`.
+	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle
+		2.3.5, to compare with it, see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb`.
 	"""
 	for engine in platens.engines if platens else ():
 		engine.ahead = convention == "esys"
 	rotational = viscosity if rotational_viscosity is None else rotational_viscosity
-	damping = [ViscousBodyDamping(viscosity=viscosity, rotationalViscosity=rotational, label="bodyDamping")] if viscosity or rotational else []
+	damping = (
+		[ViscousBodyDamping(viscosity=viscosity, rotationalViscosity=rotational, label="bodyDamping")]
+		if viscosity or rotational
+		else []
+	)
 	return [
 		ForceResetter(),
 		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], label="collider"),
 		BondedInteractionLoop(
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
 			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention), Law2_ScGeom_ElasticWallPhys_Repulsion()],
+			[
+				Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention),
+				Law2_ScGeom_ElasticWallPhys_Repulsion(),
+			],
 			label="interactions",
 		),
 		*(platens.engines if platens else []),
@@ -289,17 +340,24 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 
 
 def critical_time_step():
-	"""Rigorous bound on the time step [s] of the bonded spheres of the scene (in the consistent convention), see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
+	"""Rigorous bound on the time step [s] of the bonded spheres of the scene (in the consistent convention), see
+	:yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
 	return Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep()
 
 
 def time_step(safety=0.8):
-	"""A stable time step [s]: *safety* times :func:`critical_time_step`. The rest below 1 is for contacts that form later and for accuracy."""
+	"""A stable time step [s]: *safety* times :func:`critical_time_step`.
+	The rest below 1 is for contacts that form later and for accuracy."""
 	if not 0 < safety <= 1:
-		raise ValueError(f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use")
+		raise ValueError(
+			f"safety = {safety} must lie between 0 and 1, the share of the critical time step to use"
+		)
 	critical = critical_time_step()
 	if math.isinf(critical):
-		raise ValueError("nothing limits the time step: the scene has no bonds, contacts or walls near spheres yet; set O.dt yourself")
+		raise ValueError(
+			"nothing limits the time step: the scene has no bonds, contacts or walls near spheres yet; "
+			"set O.dt yourself"
+		)
 	return safety * critical
 
 
@@ -311,25 +369,43 @@ def check():
 	"""
 	names = ["InteractionLoop" if isinstance(e, InteractionLoop) else type(e).__name__ for e in O.engines]
 	for name, purpose in (
-		("ForceResetter", "forces would add up"), ("InsertionSortCollider", "fragments would pass through each other"), ("InteractionLoop", "bonds would bear no load"),
+		("ForceResetter", "forces would add up"),
+		("InsertionSortCollider", "fragments would pass through each other"),
+		("InteractionLoop", "bonds would bear no load"),
 		("NewtonIntegrator", "nothing would move")
 	):
 		if name not in names:
 			raise RuntimeError(f"O.engines has no {name}: {purpose}; see ddem.bonded.engines()")
 	if names.count("InteractionLoop") > 1:
-		raise RuntimeError("O.engines has more than one InteractionLoop: every bond would act more than once; see ddem.bonded.engines()")
+		raise RuntimeError(
+			"O.engines has more than one InteractionLoop: every bond would act more than once; "
+			"see ddem.bonded.engines()"
+		)
 	order = [names.index(name) for name in ("ForceResetter", "InteractionLoop", "NewtonIntegrator")]
 	if order != sorted(order):
-		raise RuntimeError("wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; see ddem.bonded.engines()")
+		raise RuntimeError(
+			"wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; "
+			"see ddem.bonded.engines()"
+		)
 	esys = law().convention == "esys"
 	for material in O.materials:
 		if isinstance(material, (BondedMat, ElasticWallMat)):
 			material.validate()
-		if esys and isinstance(material, BondedMat) and (material.gradualFriction or material.normalDamping or material.shearDamping):
-			raise ValueError(f"BondedMat '{material.label}': the convention 'esys' has neither gradualFriction nor normalDamping nor shearDamping; reset them or use 'consistent'")
+		if (
+			esys
+			and isinstance(material, BondedMat)
+			and (material.gradualFriction or material.normalDamping or material.shearDamping)
+		):
+			raise ValueError(
+				f"BondedMat '{material.label}': the convention 'esys' has neither gradualFriction nor "
+				"normalDamping nor shearDamping; reset them or use 'consistent'"
+			)
 	limit = critical_time_step()
 	if O.dt > limit:
-		raise ValueError(f"O.dt = {O.dt} s is above the critical time step {limit} s of the bonds: the run would blow up; set O.dt = ddem.bonded.time_step(0.8)")
+		raise ValueError(
+			f"O.dt = {O.dt} s is above the critical time step {limit} s of the bonds: the run would blow "
+			"up; set O.dt = ddem.bonded.time_step(0.8)"
+		)
 
 
 def law():
@@ -342,14 +418,20 @@ def law():
 			for functor in engine.lawDispatcher.functors:
 				if isinstance(functor, Law2_ScGeom_BondedPhys_MohrCoulomb):
 					return functor
-	raise RuntimeError("O.engines has no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb, so bonds bear no load and cannot break; see ddem.bonded.engines()")
+	raise RuntimeError(
+		"O.engines has no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb, so bonds bear no load and "
+		"cannot break; see ddem.bonded.engines()"
+	)
 
 
 def _material(material):
 	if isinstance(material, str):
 		labels = [m.label for m in O.materials]
 		if material not in labels:
-			raise ValueError(f"there is no material with label '{material}' in O.materials; it has: {', '.join(filter(None, labels)) or 'none'}")
+			raise ValueError(
+				f"there is no material with label '{material}' in O.materials; it has: "
+				f"{', '.join(filter(None, labels)) or 'none'}"
+			)
 		material = O.materials[labels.index(material)]
 	if not isinstance(material, BondedMat):
 		raise ValueError(f"bonded spheres need a BondedMat, not {type(material).__name__}")

@@ -7,8 +7,9 @@
 	records = broken_bonds.read("out/broken.csv")
 	(records["mode"] == "tension").sum()
 
-The columns are those of :attr:`bonded.BondedSample.broken`: the two bodies, step and time of failure, middle and normal of the crack, its radius, the mode
-("tension" or "shear"), the normal (tension positive) and shear stress that broke the bond, and the elastic energy that was lost with it. Needs no YADE.
+The columns are those of :attr:`bonded.BondedSample.broken`: the two bodies, step and time of failure, middle and normal
+of the crack, its radius, the mode ("tension" or "shear"), the normal (tension positive) and shear stress that broke the
+bond, and the elastic energy that was lost with it. Needs no YADE.
 """
 
 import numpy as np
@@ -17,14 +18,16 @@ from . import provenance
 
 #: a record of a broken bond
 DTYPE = np.dtype([
-	("id1", int), ("id2", int), ("step", int), ("time", float), ("position", float, 3), ("normal", float, 3), ("radius", float), ("mode", "U7"),
+	("id1", int), ("id2", int), ("step", int), ("time", float), ("position", float, 3), ("normal", float, 3),
+	("radius", float), ("mode", "U7"),
 	("normal_stress", float), ("shear_stress", float), ("energy", float)
 ])
 _COLUMNS = (
 	("id1 [-]", "id1", None), ("id2 [-]", "id2", None), ("step [-]", "step", None), ("time [s]", "time", None),
 	("x [m]", "position", 0), ("y [m]", "position", 1), ("z [m]", "position", 2),
 	("normal_x [-]", "normal", 0), ("normal_y [-]", "normal", 1), ("normal_z [-]", "normal", 2),
-	("radius [m]", "radius", None), ("mode", "mode", None), ("normal_stress [Pa]", "normal_stress", None), ("shear_stress [Pa]", "shear_stress", None),
+	("radius [m]", "radius", None), ("mode", "mode", None), ("normal_stress [Pa]", "normal_stress", None),
+	("shear_stress [Pa]", "shear_stress", None),
 	("energy [J]", "energy", None)
 )  # title, field and component
 

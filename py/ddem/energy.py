@@ -1,6 +1,9 @@
 # GPL v2 or later, see LICENSE.
 """How well the energy book of a run closes."""
-from yade import DeformableEngine, DeformableNode, DeformableTriangle, InteractionLoop, NewtonIntegrator, O, Quaternion, Vector3, utils
+from yade import (
+	DeformableEngine, DeformableNode, DeformableTriangle, InteractionLoop, NewtonIntegrator, O, Quaternion, Vector3,
+	utils
+)
 
 #: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
 EXTERNAL = ("externalWork", "gravWork")
@@ -11,18 +14,20 @@ NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "n
 class EnergyBalance:
 	"""The energy book of the scene, from O.energy. Make one before the first step; it switches O.trackEnergy on.
 
-	O.energy holds what is stored and dissipated with a plus sign and what came in from outside with a minus sign, so the total does not change in an exact run. It is
-	zero where the run begins at rest; a scene that moves already (or was not tracked before) has energy of its own, which is known after the first tracked step: the
-	error then counts from the first look at :attr:`error` or :meth:`record`.
+	O.energy holds what is stored and dissipated with a plus sign and what came in from outside with a minus sign,
+	so the total does not change in an exact run. It is zero where the run begins at rest; a scene that moves
+	already (or was not tracked before) has energy of its own, which is known after the first tracked step:
+	the error then counts from the first look at :attr:`error` or :meth:`record`.
 
-	NewtonIntegrator books the kinetic energy of half a step ago, while all else belongs to the present positions; here it is the mean of half a step ago and half a step
-	ahead, which is of second order in the time step.
+	NewtonIntegrator books the kinetic energy of half a step ago, while all else belongs to the present positions;
+	here it is the mean of half a step ago and half a step ahead, which is of second order in the time step.
 	"""
 
 	def __init__(self):
 		begun = O.trackEnergy and len(O.energy.keys()) > 0
 		self._born = O.iter
-		self.start = O.energy.total() if begun else 0.0 if O.iter == 0 and _at_rest() else None  #: total [J] that the book must keep; None until it is known
+		#: total [J] that the book must keep; None until it is known
+		self.start = O.energy.total() if begun else 0.0 if O.iter == 0 and _at_rest() else None
 		self._drift = self._through = 0.0  # largest at any record [J]
 		O.trackEnergy = True
 
@@ -45,13 +50,15 @@ class EnergyBalance:
 
 	@property
 	def error(self):
-		"""How far the total has moved, and what stores and losses have below zero, over the energy that has gone through the system [-]; 0 before anything happened."""
+		"""How far the total has moved, and what stores and losses have below zero, over the energy that has
+		gone through the system [-]; 0 before anything happened."""
 		drift, through = self._now()
 		return drift / through if through > 0 else 0.0
 
 	@property
 	def largest(self):
-		"""Largest such distance at any :meth:`record`, over the largest energy that has gone through [-]; a moment when next to nothing had gone through does not count."""
+		"""Largest such distance at any :meth:`record`, over the largest energy that has gone through [-];
+		a moment when next to nothing had gone through does not count."""
 		return self._drift / self._through if self._through > 0 else 0.0
 
 	def record(self):
@@ -62,24 +69,36 @@ class EnergyBalance:
 
 	def _now(self):
 		drift, parts = self.drift, self.parts()
-		through = max(sum(abs(parts.get(name, 0)) for name in EXTERNAL), sum(value for name, value in parts.items() if name not in EXTERNAL))
+		through = max(
+			sum(abs(parts.get(name, 0)) for name in EXTERNAL),
+			sum(value for name, value in parts.items() if name not in EXTERNAL),
+		)
 		borrowed = -sum(min(0.0, parts.get(name, 0.0)) for name in NEVER_NEGATIVE)
 		return abs(drift) + borrowed, through
 
 
 def _at_rest():
-	"""Whether nothing moves by itself and nothing is under load; what moves as prescribed has its energy from outside."""
+	"""Whether nothing moves by itself and nothing is under load;
+	what moves as prescribed has its energy from outside."""
 	for engine in O.engines:
-		if any(getattr(functor, "convention", None) == "esys" for functor in (engine.lawDispatcher.functors if isinstance(engine, InteractionLoop) else ())):
+		if any(
+			getattr(functor, "convention", None) == "esys"
+			for functor in (engine.lawDispatcher.functors if isinstance(engine, InteractionLoop) else ())
+		):
 			return False  # bonds across gaps are under tension from the beginning
 	still = Vector3.Zero
 	for body in O.bodies:
 		state = body.state
-		if isinstance(body.shape, (DeformableNode, DeformableTriangle)) and (state.pos != state.refPos or state.ori != Quaternion.Identity):
+		if isinstance(body.shape, (DeformableNode, DeformableTriangle)) and (
+			state.pos != state.refPos or state.ori != Quaternion.Identity
+		):
 			return False
 		if state.vel == still and state.angVel == still:
 			continue
 		blocked = state.blockedDOFs
-		if any(state.vel[k] and "xyz"[k] not in blocked or state.angVel[k] and "XYZ"[k] not in blocked for k in range(3)):
+		if any(
+			state.vel[k] and "xyz"[k] not in blocked or state.angVel[k] and "XYZ"[k] not in blocked
+			for k in range(3)
+		):
 			return False
 	return True

@@ -8,9 +8,9 @@ TILE = 256  #: triangles of a tile, as in the kernel (Tiles.hpp)
 class Field(np.lib.mixins.NDArrayOperatorsMixin):
 	"""Values (m, …) of the triangles of a block as they were when read; numpy takes it as an array.
 
-	Whatever is done with it is done by numpy, except :meth:`sum`, :meth:`mean`, :meth:`min` and :meth:`max` over the triangles: these
-	go through the fixed tree of tiles in which the engine sums its energies, so they have the same bits for any number of threads and,
-	later, of domains. It cannot be written to.
+	Whatever is done with it is done by numpy, except :meth:`sum`, :meth:`mean`, :meth:`min` and :meth:`max` over
+	the triangles: these go through the fixed tree of tiles in which the engine sums its energies, so they have the
+	same bits for any number of threads and, later, of domains. It cannot be written to.
 	"""
 
 	def __init__(self, values, places):
@@ -31,7 +31,8 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 		return total.sum() if axis is None else total
 
 	def mean(self, axis=None, **options):
-		"""Mean over the triangles, each counted once whatever its area (axis 0 or None); other axes as numpy does it."""
+		"""Mean over the triangles, each counted once whatever its area (axis 0 or None);
+		other axes as numpy does it."""
 		options = _said(options)
 		if options or not self._over_triangles(axis):
 			return self._values.mean(axis=axis, **options)
@@ -57,7 +58,9 @@ class Field(np.lib.mixins.NDArrayOperatorsMixin):
 	def __array_ufunc__(self, function, method, *inputs, **options):
 		if any(isinstance(x, Field) for x in options.get("out", ())):
 			raise ValueError("output array is read-only: what was written here would reach no triangle")
-		return getattr(function, method)(*(np.asarray(x) if isinstance(x, Field) else x for x in inputs), **options)
+		return getattr(function, method)(
+			*(np.asarray(x) if isinstance(x, Field) else x for x in inputs), **options
+		)
 
 	def __getitem__(self, index):
 		return self._values[index]

@@ -28,7 +28,9 @@ def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", b
 		Nothing is held then.
 	"""
 	if lateral not in ("fixed", "free"):
-		raise ValueError(f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)")
+		raise ValueError(
+			f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)"
+		)
 	if not math.isfinite(velocity) or velocity == 0:
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
 	if not ramp >= 0:
@@ -37,7 +39,8 @@ def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", b
 
 
 class Platens:
-	"""Two platens on a block of deformable triangles: what they do and what they feel. Compression is positive here, as strengths are."""
+	"""Two platens on a block of deformable triangles: what they do and what they feel.
+	Compression is positive here, as strengths are."""
 
 	def __init__(self, block, velocity, ramp, lateral, both, top="top", bottom="bottom"):
 		self.sample = block
@@ -135,14 +138,16 @@ def _drive(ids, velocity, ramp):
 
 
 def run(until=None, steps=None, progress=True):
-	"""O.run with a progress bar and checks beforehand; plain O.run works as well. The time step may change on the way (:yref:`DeformableTimeStepper`).
+	"""O.run with a progress bar and checks beforehand; plain O.run works as well. The time step may change on the
+	way (:yref:`DeformableTimeStepper`).
 
 	A run that something else ends, such as O.pause() in a PyRunner, ends here as well.
 
 	:param until: time to run to [s]; or
 	:param steps: number of steps.
 	:raises ValueError: neither or both of them, a time that has passed, no time step.
-	:raises RuntimeError: an engine is missing or the run stopped with an error; bad input shows in the first step, and may be a ValueError.
+	:raises RuntimeError: an engine is missing or the run stopped with an error; bad input shows in the first step,
+		and may be a ValueError.
 	"""
 	from tqdm import tqdm
 	if (until is None) == (steps is None):
@@ -151,7 +156,10 @@ def run(until=None, steps=None, progress=True):
 		raise ValueError(f"O.dt = {O.dt} s must be positive; set O.dt = ddem.time_step(0.8)")
 	if steps is None:
 		if not O.time <= until < math.inf:
-			raise ValueError(f"until = {until} s must not lie before the present time, {O.time} s; for a number of steps give steps=")
+			raise ValueError(
+				f"until = {until} s must not lie before the present time, {O.time} s; for a number of "
+				"steps give steps="
+			)
 	elif not (isinstance(steps, numbers.Integral) and steps >= 0):
 		raise ValueError(f"steps = {steps!r} must be a whole number, 0 or more")
 	_require_engine()
@@ -168,7 +176,8 @@ def run(until=None, steps=None, progress=True):
 			bar.update(O.iter - begin)
 			if O.iter < target:
 				break  # paused
-			# O.run looks for its end only every 40 ms, so pieces are long: half a second, which is also how often the bar moves and Ctrl-C is heard
+			# O.run looks for its end only every 40 ms, so pieces are long: half a second, which is also how
+			# often the bar moves and Ctrl-C is heard
 			piece = max(1, round(piece * min(10, 0.5 / (time.perf_counter() - clock))))
 
 
@@ -176,4 +185,7 @@ def _require_engine():
 	if any(isinstance(e, DeformableEngine) for e in O.engines):
 		return
 	if any(isinstance(b.shape, DeformableTriangle) for b in O.bodies if b):
-		raise RuntimeError("O.engines has no DeformableEngine, so the deformable triangles would not move; add DeformableEngine() after the engines that add forces")
+		raise RuntimeError(
+			"O.engines has no DeformableEngine, so the deformable triangles would not move; "
+			"add DeformableEngine() after the engines that add forces"
+		)

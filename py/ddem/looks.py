@@ -11,8 +11,8 @@ import re
 from yade import minieigenHP, wrapper
 
 _OMEGA = """
-	iter subStep subStepping stopAtIter stopAtTime time realtime speed dt dynDt dynDtAvailable running filename numThreads
-	timingEnabled forceSyncCount labeledEngine tags energy forces
+	iter subStep subStepping stopAtIter stopAtTime time realtime speed dt dynDt dynDtAvailable running filename
+	numThreads timingEnabled forceSyncCount labeledEngine tags energy forces
 """
 _OMEGA_READ = "engines bodies interactions materials cell periodic trackEnergy"  # setting them may change bodies
 _METHODS = {
@@ -44,7 +44,11 @@ def _functions(found):
 
 def touching_one_state():
 	"""Functions whose first argument is the State they read or write: all of State and what derives from it."""
-	classes = [owner for owner in vars(wrapper).values() if isinstance(owner, type) and issubclass(owner, wrapper.State)]
+	classes = [
+		owner
+		for owner in vars(wrapper).values()
+		if isinstance(owner, type) and issubclass(owner, wrapper.State)
+	]
 	members = [vars(owner)[name] for owner in classes for name in vars(owner) if not name.startswith("__")]
 	return _functions(part for member in members for part in _parts(member))
 
@@ -55,7 +59,8 @@ def touching_nothing():
 	for owner in vars(wrapper).values():
 		if not isinstance(owner, type) or issubclass(owner, wrapper.State):
 			continue
-		# Setting an attribute of a body, shape or material means something to the arrays; of other engines it does not.
+		# Setting an attribute of a body, shape or material means something to the arrays;
+		# of other engines it does not.
 		settable = issubclass(owner, wrapper.Engine) and owner is not wrapper.DeformableEngine
 		for member in vars(owner).values():
 			doc = getattr(member, "__doc__", None) or ""
@@ -73,6 +78,7 @@ def touching_nothing():
 		found.append(vars(wrapper.Omega)[name].fget)
 	for owner in vars(minieigenHP).values():  # vectors and matrices
 		if isinstance(owner, type):
-			members = [member for name, member in vars(owner).items() if name != "__reduce__"]  # which all classes share
+			# which all classes share
+			members = [member for name, member in vars(owner).items() if name != "__reduce__"]
 			found += [part for member in members for part in _parts(member)]
 	return _functions(found)

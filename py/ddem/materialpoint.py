@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""One material point: stress-strain curves of a law of deformable triangles, by default that of :yref:`ConcreteDamageMat`, without a scene.
+"""One material point: stress-strain curves of a law of deformable triangles,
+by default that of :yref:`ConcreteDamageMat`, without a scene.
 
 Crush a point of concrete at 1/s, first free and then in a pressure cell::
 
@@ -15,8 +16,9 @@ Any path, mixed in strain and stress; the state goes on from one call to the nex
 	point = MaterialPoint(concrete(fractureEnergy=40e3), effects={"viscoplasticFlow", "damage"})
 	shear = point.path(duration=0.01, strain={"xy": 0.005}, stress={"yy": -10e6})
 
-It works outside YADE too: append the directory that holds the package to the path (``sys.path.append("…/py/yade")``) and write ``from ddem.materialpoint import …``.
-Tension is positive, SI units; xy is the tensor component of strain (half the engineering shear).
+It works outside YADE too: append the directory that holds the package to the path (``sys.path.append("…/py/yade")``)
+and write ``from ddem.materialpoint import …``. Tension is positive, SI units; xy is the tensor component of strain
+(half the engineering shear).
 """
 import difflib
 import math
@@ -44,7 +46,8 @@ _STEP = 1e-6  # default strain of a step [-]
 def concrete(**changes):
 	"""Parameters of the concrete of Zubelewicz (2018), Tables 1 and 2, with *changes*, as a dict by name.
 
-	:raises ValueError: a name that does not exist (naming the nearest), or a value that is not allowed (naming value, unit and way out).
+	:raises ValueError: a name that does not exist (naming the nearest), or a value that is not allowed
+		(naming value, unit and way out).
 	"""
 	return law_parameters(CONCRETE, **changes)
 
@@ -58,7 +61,10 @@ def law_parameters(law, **changes):
 	parameters = {name: default for name, default, *_ in _materialpoint.parameters(law)}
 	for name, value in changes.items():
 		if name not in parameters:
-			raise ValueError(f"unknown parameter {name!r}{_nearest(name, parameters)}; there are: {', '.join(parameters)}")
+			raise ValueError(
+				f"unknown parameter {name!r}{_nearest(name, parameters)}; there are: "
+				f"{', '.join(parameters)}"
+			)
 		parameters[name] = _number(value, name)
 	_materialpoint.validate(law, parameters)
 	return parameters
@@ -119,9 +125,10 @@ class PathResult:
 class MaterialPoint:
 	"""A point that remembers its state.
 
-	:param material: None for the law's defaults; a dict of parameters; or any object with attributes of these names, such as a
-		:yref:`ConcreteDamageMat` (missing ones keep their default).
-	:param effects: names of the law's effects to simulate, of :data:`EFFECTS` for concrete. None: those that the material switches on (all, for a dict).
+	:param material: None for the law's defaults; a dict of parameters; or any object with attributes of these
+		names, such as a :yref:`ConcreteDamageMat` (missing ones keep their default).
+	:param effects: names of the law's effects to simulate, of :data:`EFFECTS` for concrete. None: those that the
+		material switches on (all, for a dict).
 	:param damage: pre-existing damage tensor Ω_0 (xx, yy, zz, xy) [-].
 	:param band_factor: of a crack band, on the fracture energy once flow has localised [-], see :mod:`crackband`.
 	:param law: one of :data:`LAWS`. None: that of the material's class, concrete for a dict.
@@ -135,8 +142,10 @@ class MaterialPoint:
 		bits = _materialpoint.effects(self.law)
 		self.effects = _effects(tuple(bits), material, effects)
 		self._point = _materialpoint.Point(
-			law=self.law, parameters=self.parameters, effects=sum(bits[name] for name in self.effects) | _materialpoint.energy,
-			damage=_tensor(damage, "damage"), bandFactor=_number(band_factor, "band_factor"), area=_number(area, "area")
+			law=self.law, parameters=self.parameters,
+			effects=sum(bits[name] for name in self.effects) | _materialpoint.energy,
+			damage=_tensor(damage, "damage"), bandFactor=_number(band_factor, "band_factor"),
+			area=_number(area, "area")
 		)
 
 	@property
@@ -150,35 +159,48 @@ class MaterialPoint:
 		:param rate: axial strain rate [1/s], negative in compression.
 		:param until: axial strain [-] at the end, counted from the confined state and of the sign of *rate*.
 		:param confinement: pressure [Pa] that is put on all around first, in 200 steps at the same rate.
-		:param step: strain per step [-]; with the default 1e-6 whole curves are within 0.15 % of the peak of those with 2e-7; see :meth:`path` for coarser ones.
+		:param step: strain per step [-]; with the default 1e-6 whole curves are within 0.15 % of the peak of
+			those with 2e-7; see :meth:`path` for coarser ones.
 		:param every: record every so many steps.
 		:returns: :class:`PathResult` of the axial loading
 		"""
 		return self._axial("uniaxial", rate, until, confinement, step, every, free=("xx", "zz"))
 
 	def plane_strain(self, rate, until, confinement=0.0, step=None, every=1):
-		"""Plane strain: as :meth:`uniaxial`, but zz keeps its strain while yy is driven; only xx is held at minus *confinement*."""
+		"""Plane strain: as :meth:`uniaxial`, but zz keeps its strain while yy is driven;
+		only xx is held at minus *confinement*."""
 		return self._axial("plane_strain", rate, until, confinement, step, every, free=("xx", ))
 
 	def path(self, duration, strain=None, stress=None, steps=1000, every=1):
-		"""A path in several components. Each goes linearly to its target, or through a sequence of targets, one leg each.
+		"""A path in several components. Each goes linearly to its target, or through a sequence of targets,
+		one leg each.
 
 		:param duration: of a leg [s].
 		:param strain: targets by component [-], e.g. ``{"yy": -0.01}`` or ``{"yy": [0.005, -0.005, 0.005]}``.
 		:param stress: likewise [Pa]. Components named in neither keep their strain.
-		:param steps: per leg. A step in which a strain under held stress changes by more than 2e-5 is halved, so coarse paths in compression stay within
-			0.5 % of the peak of fine ones, and steps of 1e-6 within 0.1 %. Tension needs small steps: 1e-6 is within 0.15 % there, 1e-5 within 1.7, 1e-4 within 11.
+		:param steps: per leg. A step in which a strain under held stress changes by more than 2e-5 is halved,
+			so coarse paths in compression stay within 0.5 % of the peak of fine ones, and steps of 1e-6
+			within 0.1 %. Tension needs small steps: 1e-6 is within 0.15 % there, 1e-5 within 1.7, 1e-4
+			within 11.
 		:param every: record every so many steps.
-		:raises ValueError: unknown component, one in both *strain* and *stress*, sequences of different length, bad number.
-		:raises RuntimeError: the material does not bear a prescribed stress; the point then stays at the last step that worked.
+		:raises ValueError: unknown component, one in both *strain* and *stress*, sequences of different length,
+			bad number.
+		:raises RuntimeError: the material does not bear a prescribed stress;
+			the point then stays at the last step that worked.
 		"""
 		targets, control = _targets(strain or {}, stress or {}, self.state)
 		return self._result([self._run(control, target, duration, steps, every) for target in targets])
 
 	def _axial(self, name, rate, until, confinement, step, every, free):
-		rate, until, confinement = (_number(value, f"{name}: {what}") for value, what in ((rate, "rate"), (until, "until"), (confinement, "confinement")))
+		rate, until, confinement = (
+			_number(value, f"{name}: {what}")
+			for value, what in ((rate, "rate"), (until, "until"), (confinement, "confinement"))
+		)
 		if not (rate * until > 0 and math.isfinite(until)):
-			raise ValueError(f"{name}: rate = {rate} 1/s and until = {until} must be finite and have the same sign, negative in compression")
+			raise ValueError(
+				f"{name}: rate = {rate} 1/s and until = {until} must be finite and have the same "
+				"sign, negative in compression"
+			)
 		if confinement < 0:
 			raise ValueError(f"{name}: confinement = {confinement} Pa is a pressure and cannot be negative")
 		step = _STEP if step is None else _number(step, f"{name}: step")
@@ -203,7 +225,9 @@ class MaterialPoint:
 			values = rows[:, column:column + components]
 			fields[name] = values[:, 0] if components == 1 else values
 			column += components
-		return PathResult(rows[:, 0], rows[:, 1:5], rows[:, 5:9], *(rows[:, k] for k in range(9, 14)), fields, axial_start)
+		return PathResult(
+			rows[:, 0], rows[:, 1:5], rows[:, 5:9], *(rows[:, k] for k in range(9, 14)), fields, axial_start
+		)
 
 	def _run(self, control, target, duration, steps, every):
 		return self._point.run(
@@ -229,9 +253,14 @@ def _parameters(law, material):
 		return law_parameters(law)
 	if isinstance(material, Mapping):
 		return law_parameters(law, **material)
-	found = {name: getattr(material, name) for name, *_ in _materialpoint.parameters(law) if hasattr(material, name)}
+	found = {
+		name: getattr(material, name) for name, *_ in _materialpoint.parameters(law) if hasattr(material, name)
+	}
 	if not found:
-		raise ValueError(f"{material!r} has none of the parameters of {'concrete' if law == CONCRETE else law}; give a dict, or an object with attributes such as bulk, shear, strength")
+		raise ValueError(
+			f"{material!r} has none of the parameters of {'concrete' if law == CONCRETE else law}; "
+			"give a dict, or an object with attributes such as bulk, shear, strength"
+		)
 	return law_parameters(law, **found)
 
 
@@ -253,13 +282,18 @@ def _targets(strain, stress, state):
 			raise ValueError(f"path: component {component!r} is unknown; there are {', '.join(COMPONENTS)}")
 	both = set(strain) & set(stress)
 	if both:
-		raise ValueError(f"path: component {both.pop()!r} is in both strain and stress; a component follows one of them")
+		raise ValueError(
+			f"path: component {both.pop()!r} is in both strain and stress; a component follows one of them"
+		)
 	if not strain and not stress:
 		raise ValueError("path: give targets in strain or stress")
 	given = {name: np.atleast_1d(np.asarray(values, float)) for name, values in {**strain, **stress}.items()}
 	legs = {len(values) for values in given.values() if len(values) > 1} or {1}
 	if len(legs) > 1 or any(values.ndim > 1 or not len(values) for values in given.values()):
-		raise ValueError(f"path: sequences of targets must have one length, got {sorted(len(values) for values in given.values())}")
+		raise ValueError(
+			"path: sequences of targets must have one length, got "
+			f"{sorted(len(values) for values in given.values())}"
+		)
 	targets = np.tile(state.strain[0], (legs.pop(), 1))
 	for name, values in given.items():
 		targets[:, COMPONENTS.index(name)] = values

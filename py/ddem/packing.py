@@ -14,7 +14,8 @@ from . import provenance
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
 
-_TOLERANCE = 5e-6  # overlap and distance to the walls that the packer allows, of the largest radius; the tutorial's 1e-5 mm for 2 mm
+# overlap and distance to the walls that the packer allows, of the largest radius; the tutorial's 1e-5 mm for 2 mm
+_TOLERANCE = 5e-6
 _FLAT = 1e-9  # a packing thinner than this share of a radius is a layer
 
 
@@ -27,20 +28,26 @@ class Packing:
 		:param radii: (n,) [m]
 		:param lower, upper: corners of the box [m]; None: that of the spheres
 		:param bonds: (m, 2) pairs of rows, or None when nothing is said about bonds
-		:raises ValueError: shapes that do not fit, numbers that are not finite, radii that are not positive, bonds to unknown spheres
+		:raises ValueError: shapes that do not fit, numbers that are not finite, radii that are not positive,
+			bonds to unknown spheres
 		"""
 		self.centres = np.array(centres, float).reshape(-1, 3)
 		self.radii = np.array(radii, float).reshape(-1)
 		if len(self.centres) != len(self.radii) or len(self.radii) == 0:
-			raise ValueError(f"a packing needs a radius for each centre: got {len(self.centres)} centres and {len(self.radii)} radii")
+			raise ValueError(
+				f"a packing needs a radius for each centre: got {len(self.centres)} centres and "
+				f"{len(self.radii)} radii"
+			)
 		for row, (centre, radius) in enumerate(zip(self.centres, self.radii)):
 			if not np.isfinite(centre).all():
 				raise ValueError(f"sphere {row}: centre {tuple(centre)} m is not finite")
 			if not (radius > 0 and math.isfinite(radius)):
 				raise ValueError(f"sphere {row}: radius = {radius} m must be positive and finite")
 		around = self.radii[:, None]
-		self.lower = np.array((self.centres - around).min(axis=0) if lower is None else lower, float)  #: corner of the box [m]
-		self.upper = np.array((self.centres + around).max(axis=0) if upper is None else upper, float)  #: corner of the box [m]
+		#: corner of the box [m]
+		self.lower = np.array((self.centres - around).min(axis=0) if lower is None else lower, float)
+		#: corner of the box [m]
+		self.upper = np.array((self.centres + around).max(axis=0) if upper is None else upper, float)
 		self.bonds = None if bonds is None else _checked_bonds(bonds, len(self.radii))
 
 	def __len__(self):
@@ -53,7 +60,8 @@ class Packing:
 
 	@property
 	def flat(self):
-		"""Whether all centres lie in one plane z = const, so that the spheres are to move in that plane only."""
+		"""Whether all centres lie in one plane z = const, so that the spheres are to
+		move in that plane only."""
 		return bool(np.ptp(self.centres[:, 2]) <= _FLAT * self.radii.max())
 
 	@property
@@ -62,7 +70,8 @@ class Packing:
 		return float((4 / 3 * math.pi * self.radii**3).sum() / self.size.prod())
 
 	def neighbours(self, gap):
-		"""Pairs of spheres whose surfaces are closer than *gap* [m] or overlap: (m, 2) rows, each pair and the list in ascending order."""
+		"""Pairs of spheres whose surfaces are closer than *gap* [m] or overlap:
+		(m, 2) rows, each pair and the list in ascending order."""
 		from scipy.spatial import cKDTree
 		if not gap >= 0:
 			raise ValueError(f"gap = {gap} m must not be negative")
@@ -78,13 +87,16 @@ class Packing:
 				reach = (self.radii[first].max() + self.radii[second].max() + gap) * (1 + 1e-12)
 				close = trees[a].sparse_distance_matrix(trees[b], reach, output_type="ndarray")
 				i, j = first[close["i"]], second[close["j"]]
-				keep = (close["v"] < self.radii[i] + self.radii[j] + gap) & ((i < j) if a == b else True)
+				keep = (close["v"] < self.radii[i] + self.radii[j] + gap) & (
+					(i < j) if a == b else True
+				)
 				found.append(np.sort(np.column_stack([i[keep], j[keep]]), axis=1))
 		pairs = np.concatenate(found)
 		return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
 	def write(self, particles, bonds=None, length_unit="m"):
-		"""Write ``id,x,y,z,r`` to *particles* and, where given, ``i,j`` to *bonds*, lengths in *length_unit*; all digits are kept."""
+		"""Write ``id,x,y,z,r`` to *particles* and, where given, ``i,j`` to *bonds*, lengths in *length_unit*;
+		all digits are kept."""
 		unit = _unit(length_unit)
 		with provenance.csv_writer(particles) as writer:
 			writer.writerow(["id", "x", "y", "z", "r"])
@@ -93,29 +105,37 @@ class Packing:
 		if bonds is None:
 			return
 		if self.bonds is None:
-			raise ValueError("this packing has no list of bonds to write; set packing.bonds = packing.neighbours(gap)")
+			raise ValueError(
+				"this packing has no list of bonds to write; "
+				"set packing.bonds = packing.neighbours(gap)"
+			)
 		with provenance.csv_writer(bonds) as writer:
 			writer.writerow(["i", "j"])
 			writer.writerows(self.bonds.tolist())
 
 
 def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
-	"""Random packing of touching spheres in a prism, x from 0 to *width*, y (the axis of loading) from 0 to *height*, z from -*depth*/2 to *depth*/2.
+	"""Random packing of touching spheres in a prism, x from 0 to *width*, y (the axis of loading) from 0 to
+	*height*, z from -*depth*/2 to *depth*/2.
 
-	GenGeo's insertion packer, which ESyS-Particle's tutorial uses (Place and Mora 2001): seed spheres at random, then spheres that touch four neighbours or walls, until *fails*
-	insertions in a row failed.
+	GenGeo's insertion packer, which ESyS-Particle's tutorial uses (Place and Mora 2001): seed spheres at random,
+	then spheres that touch four neighbours or walls, until *fails* insertions in a row failed.
 
 	:param rmin, rmax: range of radii [m]
 	:param seed: same seed, same packing (on the same C library)
 	:param fails: more give a denser packing, and take longer
-	:param keep: folder, made when missing, from which a packing with the same parameters is taken where it was made before, and where it is kept otherwise
+	:param keep: folder, made when missing, from which a packing with the same parameters is taken where it was made
+		before, and where it is kept otherwise
 	:returns: :class:`Packing`
 	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit
 	:raises ImportError: GenGeo is missing
 	"""
 	_check_sizes({"width": width, "height": height, "depth": depth, "rmin": rmin, "rmax": rmax}, rmin, rmax)
 	if 2 * rmax > min(width, height, depth):
-		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; choose a smaller radius, or layer()")
+		raise ValueError(
+			f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; "
+			"choose a smaller radius, or layer()"
+		)
 	lower, upper = (0, 0, -depth / 2), (width, height, depth / 2)
 	provenance.note_seed(seed)
 	path = _kept(keep, (width, height, depth), rmin, rmax, seed, fails)
@@ -132,13 +152,18 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 
 
 def layer(width, height, rmin, rmax, seed=1, fails=5000):
-	"""One layer of touching spheres in the plane z = 0, x from 0 to *width*, y from 0 to *height*; its box is 2 *rmax* deep.
+	"""One layer of touching spheres in the plane z = 0, x from 0 to *width*, y from 0 to *height*;
+	its box is 2 *rmax* deep.
 
-	A two-dimensional specimen to set beside deformable triangles: :func:`bonded.append` blocks motion out of its plane. Parameters and errors as for :func:`prism`.
+	A two-dimensional specimen to set beside deformable triangles: :func:`bonded.append` blocks motion out of its
+	plane. Parameters and errors as for :func:`prism`.
 	"""
 	_check_sizes({"width": width, "height": height, "rmin": rmin, "rmax": rmax}, rmin, rmax)
 	if 2 * rmax > min(width, height):
-		raise ValueError(f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} m; choose a smaller radius")
+		raise ValueError(
+			f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} m; choose "
+			"a smaller radius"
+		)
 	provenance.note_seed(seed)
 	spheres = _pack((width, height), rmin, rmax, seed, fails)
 	spheres[:, 2] = 0
@@ -146,7 +171,8 @@ def layer(width, height, rmin, rmax, seed=1, fails=5000):
 
 
 def read(particles, bonds=None, length_unit="m"):
-	"""Packing from a CSV file with the columns id, x, y, z, r (in any order, others are ignored) and, where given, bonds from one with i, j, which are such ids.
+	"""Packing from a CSV file with the columns id, x, y, z, r (in any order, others are ignored) and, where given,
+	bonds from one with i, j, which are such ids.
 
 	:param length_unit: of the file: "m", "cm", "mm" or "um"
 	:raises ValueError: naming file, line and what is wrong there
@@ -224,14 +250,23 @@ def _pack(size, rmin, rmax, seed, fails):
 	try:
 		import gengeo
 	except ImportError as error:
-		raise ImportError("sphere packings need GenGeo: install Debian's package python3-gengeo, or read a packing from a file with packing.read()") from error
+		raise ImportError(
+			"sphere packings need GenGeo: install Debian's package python3-gengeo, or read a packing from "
+			"a file with packing.read()"
+		) from error
 	scaled = [s / rmax for s in size]  # GenGeo's own constants suit radii of order one
 	with _quiet():
-		packer, box, table = _packer_in_plane(gengeo, *scaled, rmin / rmax, fails) if len(size) == 2 else _packer_in_space(gengeo, scaled, rmin / rmax, fails)
+		packer, box, table = (
+			_packer_in_plane(gengeo, *scaled, rmin / rmax, fails)
+			if len(size) == 2
+			else _packer_in_space(gengeo, scaled, rmin / rmax, fails)
+		)
 		# GenGeo draws from the C library's rand(); its own seeding knows only "fixed" and "by the clock".
 		ctypes.CDLL(None).srand(ctypes.c_uint(int(seed)))
 		packer.generatePacking(volume=box, ntable=table, groupID=0, tag=0)
-	spheres = [(s.Centre().X(), s.Centre().Y(), s.Centre().Z(), s.Radius()) for s in table.getSphereListFromGroup(0)]
+	spheres = [
+		(s.Centre().X(), s.Centre().Y(), s.Centre().Z(), s.Radius()) for s in table.getSphereListFromGroup(0)
+	]
 	return np.array(spheres).reshape(-1, 4) * rmax
 
 
@@ -284,7 +319,10 @@ def _records(path, columns):
 		header = [name.strip() for name in next(lines, (1, []))[1]]
 		missing = [name for name in columns if name not in header]
 		if missing:
-			raise ValueError(f"{path}, line 1: column {missing[0]} is missing; the header must name {', '.join(columns)}")
+			raise ValueError(
+				f"{path}, line 1: column {missing[0]} is missing; the header must name "
+				f"{', '.join(columns)}"
+			)
 		for number, fields in lines:
 			place = f"{path}, line {number}"
 			if not fields:
@@ -298,7 +336,9 @@ def _number(place, name, text, kind):
 	try:
 		value = kind(text)
 	except ValueError:
-		raise ValueError(f"{place}: {name} = '{text.strip()}' is not {'a whole' if kind is int else 'a'} number") from None
+		raise ValueError(
+			f"{place}: {name} = '{text.strip()}' is not {'a whole' if kind is int else 'a'} number"
+		) from None
 	if not math.isfinite(value):
 		raise ValueError(f"{place}: {name} = {text.strip()} is not finite")
 	return value

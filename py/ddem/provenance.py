@@ -2,7 +2,8 @@
 """Where a result comes from: versions, command, seed and a hash of the inputs, in every file that the package writes.
 
 Scripts need to do nothing: the script itself, the meshes and packings that it reads and the seeds that it draws from
-are noted on the way, and all writers of the package add :func:`record`. What else a result depends on is named by hand::
+are noted on the way, and all writers of the package add :func:`record`.
+What else a result depends on is named by hand::
 
 	from yade.ddem import provenance
 
@@ -77,8 +78,8 @@ def record(inputs=(), seed=None):
 	:param seed: in the place of what is known of the run
 	:returns: dict of ``plugin`` (version, git revision of the build, hash of its code), ``versions`` (YADE, Python,
 		numpy), ``machine`` (system, processor, cores, threads), ``written`` (UTC), ``command``, ``seed``,
-		``parameters_sha256``, ``files`` (names and SHA-256) and ``inputs_sha256``, of parameters, seed and files;
-		None where there is no such thing
+		``parameters_sha256``, ``files`` (names and SHA-256) and ``inputs_sha256``, of parameters, seed and
+		files; None where there is no such thing
 	:raises OSError: a file that was noted cannot be read any more
 	"""
 	seed = seed if seed is not None else _run.seed if _run.seed is not None else _several(_run.seeds)

@@ -51,7 +51,10 @@ class Series:
 		"""Add a row; it must have exactly this series' columns."""
 		if values.keys() != self.units.keys():
 			wrong = sorted(values.keys() ^ self.units.keys())
-			raise ValueError(f"a row of this series has the columns {', '.join(self.units)}; {', '.join(wrong)} is missing or unknown")
+			raise ValueError(
+				f"a row of this series has the columns {', '.join(self.units)}; {', '.join(wrong)} is "
+				"missing or unknown"
+			)
 		self._rows.append([float(values[name]) for name in self.units])
 
 	def write(self, path):
@@ -70,7 +73,10 @@ class Series:
 			rows = provenance.csv_rows(file)
 			columns = [_HEADER.match(cell) for cell in next(rows, (1, []))[1]]
 			if not columns or not all(columns):
-				raise ValueError(f"{path}, line 1: the header must name every column with its unit, as in \"time [s],stress [Pa]\"")
+				raise ValueError(
+					f"{path}, line 1: the header must name every column with its unit, "
+					"as in \"time [s],stress [Pa]\""
+				)
 			series = cls(**{found[1]: found[2] for found in columns})
 			if len(series.units) != len(columns):
 				raise ValueError(f"{path}, line 1: a column is named twice")
@@ -80,7 +86,10 @@ class Series:
 				except ValueError as error:
 					raise ValueError(f"{path}, line {line}: {error}") from None
 				if len(row) != len(columns):
-					raise ValueError(f"{path}, line {line}: {len(row)} fields where the header has {len(columns)}")
+					raise ValueError(
+						f"{path}, line {line}: {len(row)} fields where the header has "
+						f"{len(columns)}"
+					)
 		return series
 
 	def _column(self, name):

@@ -6,7 +6,8 @@ A recorder is called whenever a file is wanted, for instance by a PyRunner::
 	record = ddem.vtk.Recorder(block, "out/block")
 	O.engines += [PyRunner(command="record()", virtPeriod=1e-5)]
 
-Deformable triangles give one series of files; bonded spheres give three: spheres, bonds and broken bonds. Open the .pvd file in ParaView.
+Deformable triangles give one series of files; bonded spheres give three: spheres, bonds and broken bonds.
+Open the .pvd file in ParaView.
 """
 import glob
 import os
@@ -29,18 +30,24 @@ HOLDS, TENSION, SHEAR = 0, 1, 2
 class Recorder:
 	"""Writes the state of a sample each time it is called.
 
-	:param sample: a Block of deformable triangles (:func:`yade.ddem.append`) or a sample of bonded spheres (:func:`yade.ddem.bonded.append`)
-	:param name: path and beginning of the files' names: "out/block" gives out/block.pvd and out/block-0000.vtu, out/block-0001.vtu … Missing folders are made;
-		files of an earlier recording of that name are removed.
-	:param sub_elements: of triangles: three cells a triangle, each with its own stress and damage, instead of one with their mean
+	:param sample: a Block of deformable triangles (:func:`yade.ddem.append`) or a sample of bonded spheres
+		(:func:`yade.ddem.bonded.append`)
+	:param name: path and beginning of the files' names: "out/block" gives out/block.pvd and out/block-0000.vtu,
+		out/block-0001.vtu … Missing folders are made; files of an earlier recording of that name are removed.
+	:param sub_elements: of triangles: three cells a triangle, each with its own stress and damage,
+		instead of one with their mean
 
-	=================  ==========================================================================================================================
-	triangles          stress [Pa], strain, plasticStrain (symmetric tensors), damage, rotation [rad], region, id; nodes: displacement [m], velocity [m/s]
-	spheres            radius [m], displacement [m], velocity [m/s], rotation (vector) [rad], damage (share of its bonds that are broken), id
-	bonds              state (0 holds, 1 broken in tension, 2 broken in shear), radius [m], axialForce (tension positive), shearForce [N] (NaN where
-	                   broken), normalStress, shearStress [Pa] (those of the moment of failure where broken)
-	broken bonds       time [s], mode (as state), normal of the crack, radius [m], normalStress, shearStress [Pa], energy lost [J]
-	=================  ==========================================================================================================================
+	=================  =============================================================================================
+	triangles          stress [Pa], strain, plasticStrain (symmetric tensors), damage, rotation [rad], region, id;
+	                   nodes: displacement [m], velocity [m/s]
+	spheres            radius [m], displacement [m], velocity [m/s], rotation (vector) [rad], damage
+	                   (share of its bonds that are broken), id
+	bonds              state (0 holds, 1 broken in tension, 2 broken in shear), radius [m], axialForce (tension
+	                   positive), shearForce [N] (NaN where broken), normalStress, shearStress [Pa]
+	                   (those of the moment of failure where broken)
+	broken bonds       time [s], mode (as state), normal of the crack, radius [m], normalStress,
+	                   shearStress [Pa], energy lost [J]
+	=================  =============================================================================================
 	"""
 
 	def __init__(self, sample, name, sub_elements=False):
@@ -65,7 +72,8 @@ def grid(points, cells, kind, point_data=None, cell_data=None):
 	:param points: (n, 2) or (n, 3)
 	:param cells: (m, k) rows of points; (m,) for VTK_VERTEX
 	:param kind: VTK_TRIANGLE, VTK_LINE or VTK_VERTEX
-	:param point_data, cell_data: arrays by name, a row per point or cell; rows of two numbers become vectors in the plane, rows of six are symmetric tensors
+	:param point_data, cell_data: arrays by name, a row per point or cell; rows of two numbers become vectors in the
+		plane, rows of six are symmetric tensors
 	"""
 	cells = np.asarray(cells, dtype=np.int64)
 	cells = cells[:, None] if cells.ndim == 1 else cells
@@ -78,7 +86,10 @@ def grid(points, cells, kind, point_data=None, cell_data=None):
 	corners[:, 1:] = cells
 	table.ImportLegacyFormat(numpy_to_vtkIdTypeArray(corners.ravel(), deep=True))
 	result.SetCells(kind, table)
-	for data, arrays, rows in ((result.GetPointData(), point_data, len(points)), (result.GetCellData(), cell_data, len(cells))):
+	for data, arrays, rows in (
+		(result.GetPointData(), point_data, len(points)),
+		(result.GetCellData(), cell_data, len(cells)),
+	):
 		for name, values in (arrays or {}).items():
 			if len(values) != rows:
 				raise ValueError(f"array '{name}' has {len(values)} rows where the grid has {rows}")
@@ -142,7 +153,11 @@ def _parts(sample, sub_elements):
 	from .block import Block
 	if isinstance(sample, Block):
 		return {"": lambda: _triangles(sample, sub_elements)}
-	return {"-spheres": lambda: _spheres(sample), "-bonds": lambda: _bonds(sample), "-broken": lambda: _broken(sample)}
+	return {
+		"-spheres": lambda: _spheres(sample),
+		"-bonds": lambda: _bonds(sample),
+		"-broken": lambda: _broken(sample),
+	}
 
 
 def _triangles(block, sub_elements):
@@ -161,10 +176,14 @@ def _triangles(block, sub_elements):
 		cores = block.core_positions
 		corners = np.vstack([nodes, cores])
 		points = {
-			"displacement": np.vstack([block.displacements, cores - block.reference_positions[triangles].mean(axis=1)]),
+			"displacement": np.vstack(
+				[block.displacements, cores - block.reference_positions[triangles].mean(axis=1)]
+			),
 			"velocity": np.vstack([block.velocities, block.core_velocities]),
 		}
-		cells = np.stack([np.repeat(centres, 3), triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()], axis=1)
+		cells = np.stack(
+			[np.repeat(centres, 3), triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()], axis=1
+		)
 		values = {name: array.reshape(len(cells), -1) for name, array in (tensors | scalars).items()}
 		single = {name: np.repeat(array, 3) for name, array in single.items()}
 	else:
@@ -178,7 +197,8 @@ def _triangles(block, sub_elements):
 
 def _spheres(sample):
 	arrays = {
-		"radius": sample.radii, "displacement": sample.displacements, "velocity": sample.velocities, "rotation": sample.rotations, "damage": sample.damage,
+		"radius": sample.radii, "displacement": sample.displacements, "velocity": sample.velocities,
+		"rotation": sample.rotations, "damage": sample.damage,
 		"id": sample.ids
 	}
 	return grid(sample.positions, np.arange(len(sample)), VTK_VERTEX, arrays)

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# Adds up JUnit reports: count_results.py GROUP=FILE…  Prints one closing line; fails when a test has failed or a group has left no report (its program crashed).
+# Adds up JUnit reports: count_results.py GROUP=FILE…  Prints one closing line; fails when a test has failed or a group
+# has left no report (its program crashed).
 import sys
 import xml.etree.ElementTree as ElementTree
 

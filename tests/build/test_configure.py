@@ -6,20 +6,29 @@ import subprocess
 import pytest
 
 FIND_YADE = pathlib.Path(__file__).resolve().parents[2] / 'scripts' / 'cmake' / 'FindYade.cmake'
-DEBIANS_YADE = {'version': '2025.2.0', 'features': 'LOGGER;OPENMP;QT5', 'libdir': '/usr/lib/yade', 'prefix': '/usr', 'real_bits': '64', 'real_digits': '15', 'mpmath': '1', 'python': '3.13'}
+DEBIANS_YADE = {
+	'version': '2025.2.0', 'features': 'LOGGER;OPENMP;QT5', 'libdir': '/usr/lib/yade', 'prefix': '/usr',
+	'real_bits': '64', 'real_digits': '15', 'mpmath': '1', 'python': '3.13'
+}
 
 
 def find_yade(folder, **variables):
 	driver = folder / 'driver.cmake'
 	driver.write_text('cmake_minimum_required(VERSION 3.25)\ninclude("%s")\n' % FIND_YADE)
-	result = subprocess.run(['cmake', *('-D%s=%s' % variable for variable in variables.items()), '-P', driver], cwd=folder, capture_output=True, text=True)
+	result = subprocess.run(
+		['cmake', *('-D%s=%s' % variable for variable in variables.items()), '-P', driver],
+		cwd=folder,
+		capture_output=True,
+		text=True,
+	)
 	assert result.returncode != 0
 	return ' '.join(result.stderr.split())
 
 
 @pytest.fixture
 def configure(tmp_path):
-	"""Runs the search with a program that answers as a YADE with the given facts would; gives CMake's error message as one line."""
+	"""Runs the search with a program that answers as a YADE with the given facts would;
+	gives CMake's error message as one line."""
 
 	def run(source_version='2025.2.0', **facts):
 		program = tmp_path / 'yade'
@@ -63,7 +72,11 @@ def test_headers_of_another_version(configure):
 
 def test_no_headers(configure):
 	error = configure(source_version=None)
-	assert 'No YADE headers' in error and 'apt-get source --tar-only yade' in error and 'yade_2025.2.0.orig.tar.bz2' in error
+	assert (
+		'No YADE headers' in error
+		and 'apt-get source --tar-only yade' in error
+		and 'yade_2025.2.0.orig.tar.bz2' in error
+	)
 
 
 def test_program_that_does_not_run(tmp_path):

@@ -12,7 +12,8 @@ import pytest
 SCRIPT = '''
 import yade
 print('YADE runs:', O.iter == 0 and len(O.bodies) == 0)
-print('classes of the plugin:', [name for name in yade.__all__ if name.startswith('DeformableE') and name.endswith('Engine')])
+engines = [name for name in yade.__all__ if name.startswith('DeformableE') and name.endswith('Engine')]
+print('classes of the plugin:', engines)
 from yade import ddem
 '''
 
@@ -25,7 +26,8 @@ def build():
 
 @pytest.fixture
 def run_with_loader(build, tmp_path):
-	"""Builds the loader with one source compiled in another way, and runs a script in a YADE that finds it; gives exit code, stdout and stderr."""
+	"""Builds the loader with one source compiled in another way, and runs a script in a YADE that finds it;
+	gives exit code, stdout and stderr."""
 
 	def run(source, change):
 		commands = json.load(open(os.path.join(build, 'compile_commands.json')))
@@ -39,7 +41,10 @@ def run_with_loader(build, tmp_path):
 		prefix = tmp_path / 'prefix'
 		shutil.copytree(os.environ['YADE_PREFIX'], prefix, symlinks=True)
 		(library,) = prefix.glob('lib*/**/libpkg_ddem.so')
-		link = subprocess.run(['ninja', '-t', 'commands', 'libpkg_ddem.so'], cwd=build, check=True, capture_output=True, text=True).stdout.splitlines()[-1]
+		link = subprocess.run(
+			['ninja', '-t', 'commands', 'libpkg_ddem.so'], cwd=build, check=True, capture_output=True,
+			text=True
+		).stdout.splitlines()[-1]
 		link = link.replace(normal_object, shlex.quote(wrong_object))
 		link = re.sub(r' -o \S*libpkg_ddem\.so ', ' -o %s ' % shlex.quote(str(library)), link)
 		library.unlink()
@@ -47,7 +52,12 @@ def run_with_loader(build, tmp_path):
 
 		script = tmp_path / 'script.py'
 		script.write_text(SCRIPT)
-		result = subprocess.run(['yade', '-n', '-x', str(script)], env={**os.environ, 'YADE_PREFIX': str(prefix)}, capture_output=True, text=True)
+		result = subprocess.run(
+			['yade', '-n', '-x', str(script)],
+			env={**os.environ, 'YADE_PREFIX': str(prefix)},
+			capture_output=True,
+			text=True,
+		)
 		return result.returncode, result.stdout, result.stderr
 
 	return run
@@ -66,7 +76,9 @@ def expect_refusal(result, cause):
 def test_plugin_compiled_without_a_feature_of_yade_is_refused(run_with_loader):
 	# FEM support is a shared_ptr in Shape (16 bytes), before all the members that scripts use.
 	without_fem = lambda arguments: [argument for argument in arguments if argument != '-DYADE_FEM']
-	expect_refusal(run_with_loader('LayoutCheck.cpp', without_fem), r'class Shape: \d+ bytes in YADE, \d+ in the plugin')
+	expect_refusal(
+		run_with_loader('LayoutCheck.cpp', without_fem), r'class Shape: \d+ bytes in YADE, \d+ in the plugin'
+	)
 
 
 @pytest.mark.slow
@@ -92,5 +104,9 @@ def test_every_definition_that_changes_layouts_is_noticed(run_with_loader, remov
 
 
 def test_plugin_built_for_another_version_is_refused(run_with_loader):
-	older = lambda arguments: [re.sub(r'(-DDDEM_YADE_VERSION=).*', r'\1"2024.1"', argument) for argument in arguments]
-	expect_refusal(run_with_loader('Loader.cpp', older), r'version: YADE is [\d.]+, the plugin was built for 2024\.1')
+	older = lambda arguments: [
+		re.sub(r'(-DDDEM_YADE_VERSION=).*', r'\1"2024.1"', argument) for argument in arguments
+	]
+	expect_refusal(
+		run_with_loader('Loader.cpp', older), r'version: YADE is [\d.]+, the plugin was built for 2024\.1'
+	)

@@ -38,7 +38,10 @@ def test_every_command_has_help(command):
 def test_general_help_names_every_command():
 	result = ddem('--help')
 	assert result.returncode == 0
-	assert all('scripts/ddem ' + command in result.stdout for command in ['run', 'test', 'bench', 'docs', 'shell', 'setup'])
+	assert all(
+		'scripts/ddem ' + command in result.stdout
+		for command in ['run', 'test', 'bench', 'docs', 'shell', 'setup']
+	)
 
 
 @pytest.mark.parametrize(
@@ -64,12 +67,18 @@ def test_script_runs_with_the_plugin_its_arguments_and_the_callers_directory(scr
 		'''
 import os, sys
 import yade
-open('result.txt', 'w').write(repr((sys.argv[1:], os.getcwd(), os.environ['MY_VARIABLE'], any('libpkg_ddem.so' in line for line in open('/proc/self/maps')))))
+loaded = any('libpkg_ddem.so' in line for line in open('/proc/self/maps'))
+open('result.txt', 'w').write(repr((sys.argv[1:], os.getcwd(), os.environ['MY_VARIABLE'], loaded)))
 '''
 	)
 	result = ddem('run', path, 'two words', '--option', '', cwd=tmp_path, env={**os.environ, 'MY_VARIABLE': "it's"})
 	assert result.returncode == 0, result.stderr
-	assert eval((tmp_path / 'result.txt').read_text()) == (['two words', '--option', ''], str(tmp_path), "it's", True)
+	assert eval((tmp_path / 'result.txt').read_text()) == (
+		['two words', '--option', ''],
+		str(tmp_path),
+		"it's",
+		True,
+	)
 	assert (tmp_path / 'result.txt').stat().st_uid == os.getuid()
 
 
@@ -96,19 +105,34 @@ def fake_apt(tmp_path):
 
 def test_package_that_a_script_needs_is_installed_or_named(script, fake_apt):
 	environment, notes = fake_apt
-	result = ddem('run', script('# A comment.\n# needs: ddem-absent python3-numpy\nprint("the script runs")'), env=environment)
+	result = ddem(
+		'run',
+		script('# A comment.\n# needs: ddem-absent python3-numpy\nprint("the script runs")'),
+		env=environment,
+	)
 	if os.getuid() == 0:
 		assert result.returncode == 0 and 'the script runs' in result.stdout, result.stderr
 		installed = [line.split() for line in notes.read_text().splitlines() if ' install ' in line]
 		assert len(installed) == 1 and '--no-install-recommends' in installed[0]
-		assert installed[0][-1] == 'ddem-absent' and 'python3-numpy' not in installed[0]  # the latter is there already
+		# the latter is there already
+		assert installed[0][-1] == 'ddem-absent' and 'python3-numpy' not in installed[0]
 	else:
-		assert result.returncode == 125 and 'sudo apt-get install --no-install-recommends ddem-absent' in result.stderr
+		assert (
+			result.returncode == 125
+			and 'sudo apt-get install --no-install-recommends ddem-absent' in result.stderr
+		)
 
 
 def test_needs_count_only_at_the_top_of_a_script(script, fake_apt):
 	environment, notes = fake_apt
-	result = ddem('run', script('#!/usr/bin/env python3\n# needs: python3-numpy\nprint("the script runs")\n# needs: ddem-absent\n'), env=environment)
+	result = ddem(
+		'run',
+		script(
+			'#!/usr/bin/env python3\n# needs: python3-numpy\nprint("the script runs")\n'
+			'# needs: ddem-absent\n'
+		),
+		env=environment,
+	)
 	assert result.returncode == 0 and 'the script runs' in result.stdout, result.stderr
 	assert notes.read_text() == ''
 
@@ -116,7 +140,10 @@ def test_needs_count_only_at_the_top_of_a_script(script, fake_apt):
 def test_needs_that_are_no_package_names_are_refused(script, fake_apt):
 	environment, notes = fake_apt
 	result = ddem('run', script('# needs: python3-numpy --allow-downgrades\n'), env=environment)
-	assert result.returncode == 2 and "'--allow-downgrades', which is not the name of a Debian package" in result.stderr
+	assert (
+		result.returncode == 2
+		and "'--allow-downgrades', which is not the name of a Debian package" in result.stderr
+	)
 	assert notes.read_text() == ''
 
 
@@ -133,7 +160,10 @@ def test_ctrl_c_stops_the_script(script):
 	path = script('import signal\nprint("started", flush=True)\nsignal.pause()')
 	# A job started in the background ignores Ctrl-C and hands that on; a person at a terminal does not.
 	listen = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)
-	process = subprocess.Popen([DDEM, 'run', path], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, start_new_session=True, preexec_fn=listen)
+	process = subprocess.Popen(
+		[DDEM, 'run', path], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+		start_new_session=True, preexec_fn=listen
+	)
 	for line in process.stdout:
 		if line.startswith('started'):
 			break

@@ -48,8 +48,9 @@ class Launchers:
 			program.chmod(0o755)
 		(folder / NEEDY[1]).write_text('# needs: ddem-absent\n')
 		self.environment = {
-			**os.environ, 'PATH': '%s:%s' % (folder / 'bin', os.environ['PATH']), 'XDG_CACHE_HOME': str(folder / 'cache'),
-			'YADE_SOURCE_DIR': str(folder), 'BUILD_GATE': '', 'INSTALL_GATE': ''
+			**os.environ, 'PATH': '%s:%s' % (folder / 'bin', os.environ['PATH']),
+			'XDG_CACHE_HOME': str(folder / 'cache'), 'YADE_SOURCE_DIR': str(folder), 'BUILD_GATE': '',
+			'INSTALL_GATE': ''
 		}
 		self.environment.pop('YADE_PREFIX', None)
 
@@ -63,8 +64,10 @@ class Launchers:
 		gates = {'BUILD_GATE': build, 'INSTALL_GATE': install}
 		gates = {name: str(gate.path) for name, gate in gates.items() if gate}
 		process = subprocess.Popen(
-			[scripts / 'ddem', *(arguments or ('shell', 'true'))], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-			stderr=subprocess.PIPE, text=True, cwd=self._folder, env={**self.environment, **gates}, start_new_session=True
+			[scripts / 'ddem', *(arguments or ('shell', 'true'))], stdin=subprocess.DEVNULL,
+			stdout=subprocess.DEVNULL,
+			stderr=subprocess.PIPE, text=True, cwd=self._folder, env={**self.environment, **gates},
+			start_new_session=True
 		)
 		self._processes.append(process)
 		return process

@@ -12,7 +12,8 @@ import pytest
 
 
 class SameModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-	"""Inside YADE the package is yade.ddem; the tests call it ddem in both places, and must not load its modules twice."""
+	"""Inside YADE the package is yade.ddem; the tests call it ddem in both places,
+	and must not load its modules twice."""
 
 	def find_spec(self, name, path, target=None):
 		return importlib.util.spec_from_loader(name, self) if name.startswith("ddem.") else None
@@ -30,7 +31,12 @@ if "yade" in sys.modules:
 	sys.modules["ddem"] = importlib.import_module("yade.ddem")
 	sys.meta_path.insert(0, SameModules())
 else:
-	packages = glob.glob(os.path.join(os.environ.get("YADE_PREFIX") or "/usr", "lib", "*", "yade*", "py", "yade", "ddem"))
+	packages = glob.glob(
+		os.path.join(os.environ.get("YADE_PREFIX") or "/usr", "lib", "*", "yade*", "py", "yade", "ddem")
+	)
 	if not packages:
-		raise pytest.UsageError("no installed package yade.ddem: set YADE_PREFIX to the overlay it was installed into, or run inside YADE")
+		raise pytest.UsageError(
+			"no installed package yade.ddem: set YADE_PREFIX to the overlay it was installed into, or run "
+			"inside YADE"
+		)
 	sys.path.insert(0, os.path.dirname(packages[0]))

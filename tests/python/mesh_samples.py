@@ -36,11 +36,18 @@ class Sample:
 
 
 def _sample(outline, holes=(), regions=None, **options):
-	return Sample(mesh.polygon(outline, holes=holes, regions=regions, **options), [*np.asarray(outline)], [*holes], regions or {})
+	return Sample(
+		mesh.polygon(outline, holes=holes, regions=regions, **options),
+		[*np.asarray(outline)],
+		[*holes],
+		regions or {},
+	)
 
 
 def _block(pattern, **options):
-	return Sample(mesh.rectangle(0.1, 0.2, pattern=pattern, **options), [*mesh.box(0, 0, 0.1, 0.2)], generated=False)
+	return Sample(
+		mesh.rectangle(0.1, 0.2, pattern=pattern, **options), [*mesh.box(0, 0, 0.1, 0.2)], generated=False
+	)
 
 
 SAMPLES = {
@@ -52,9 +59,18 @@ SAMPLES = {
 	"unstructured": lambda: _sample(mesh.box(0, 0, 0.1, 0.2), regions={"steel": BAR}, size=0.005),
 	"not smoothed": lambda: _sample(mesh.box(0, 0, 0.1, 0.2), regions={"steel": BAR}, size=0.005, smoothing=0),
 	"another draw": lambda: _sample(mesh.box(0, 0, 0.1, 0.2), size=0.005, seed=3),
-	"hole and size field": lambda: _sample(mesh.box(0, 0, 0.1, 0.2), holes=[HOLE], size=towards_hole, regions={"lining": mesh.disc(0.05, 0.15, 0.02, 64)}),
-	"three holes": lambda: _sample(mesh.disc(0, 0, 0.1, 90), holes=[mesh.disc(x, 0.01, 0.02, 30) for x in (-0.05, 0, 0.05)], size=0.008),
-	"angled": lambda: _sample(ANGLED, regions={"foot": mesh.box(0, 0, 0.1, 0.02), "corner": mesh.box(0, 0.02, 0.04, 0.04)}, size=0.006),
+	"hole and size field": lambda: _sample(
+		mesh.box(0, 0, 0.1, 0.2),
+		holes=[HOLE],
+		size=towards_hole,
+		regions={"lining": mesh.disc(0.05, 0.15, 0.02, 64)},
+	),
+	"three holes": lambda: _sample(
+		mesh.disc(0, 0, 0.1, 90), holes=[mesh.disc(x, 0.01, 0.02, 30) for x in (-0.05, 0, 0.05)], size=0.008
+	),
+	"angled": lambda: _sample(
+		ANGLED, regions={"foot": mesh.box(0, 0, 0.1, 0.02), "corner": mesh.box(0, 0.02, 0.04, 0.04)}, size=0.006
+	),
 	"clockwise outline": lambda: _sample(ANGLED[::-1], size=0.01),
 	"coarser than the outline": lambda: _sample(mesh.disc(0, 0, 1, 7), size=5),
 }

@@ -48,7 +48,7 @@ def modules():
 def classes():
 	"""YADE classes of the plugin."""
 	sources = (path.read_text(encoding="utf-8") for path in (ROOT / "pkg").rglob("*.cpp"))
-	registered = (re.findall(r"DDEM_PLUGIN\(([()\w]+)\)", source) for source in sources)
+	registered = (re.findall(r"DDEM_PLUGIN\(((?:\(\w+\)\s*)+)\)", source) for source in sources)
 	return {name for lists in registered for names in lists for name in re.findall(r"\w+", names)}
 
 

@@ -39,11 +39,16 @@ def test_quality_names_the_worst_triangles():
 	assert quality.largest_area == pytest.approx(20)
 	assert quality.regions[""] == (4, pytest.approx(35))
 	text = str(quality)
-	assert "smallest height 1.874 m, triangle 2 at (4.667, 1.167) m" in text and "triangle 3 at (10, 2.167) m" in text
+	assert (
+		"smallest height 1.874 m, triangle 2 at (4.667, 1.167) m" in text
+		and "triangle 3 at (10, 2.167) m" in text
+	)
 
 
 def test_aspect_of_an_equilateral_triangle_is_one():
-	assert mesh.Mesh([(0, 0), (1, 0), (0.5, np.sqrt(0.75))], [(0, 1, 2)]).quality().largest_aspect == pytest.approx(1)
+	assert mesh.Mesh([(0, 0), (1, 0), (0.5, np.sqrt(0.75))], [(0, 1, 2)]).quality().largest_aspect == pytest.approx(
+		1
+	)
 
 
 def test_quality_does_not_choose_among_equals_by_round_off():
@@ -105,20 +110,25 @@ def index_distances(m):
 def shuffled(m, seed):
 	random = np.random.default_rng(seed)
 	nodes, triangles = random.permutation(len(m.nodes)), random.permutation(len(m.triangles))
-	return mesh.Mesh(m.nodes[nodes], np.argsort(nodes)[m.triangles[triangles]], m.regions[triangles], m.region_names)
+	return mesh.Mesh(
+		m.nodes[nodes], np.argsort(nodes)[m.triangles[triangles]], m.regions[triangles], m.region_names
+	)
 
 
 def corners(m):
 	"""What does not depend on numbering: each triangle's corners (from its lowest one on) and region."""
-	return sorted((min(shape[k:] + shape[:k] for k in range(3)), region) for shape, region in zip(m.nodes[m.triangles].tolist(), m.regions.tolist()))
+	return sorted(
+		(min(shape[k:] + shape[:k] for k in range(3)), region)
+		for shape, region in zip(m.nodes[m.triangles].tolist(), m.regions.tolist())
+	)
 
 
 def test_reordered_brings_neighbours_together():
 	block = mesh.rectangle(0.1, 0.2, size=0.002, regions={"steel": mesh.box(0.042, 0.092, 0.058, 0.108)})
 	mixed = shuffled(block, 1)
 	order = mixed.reordered()
-	# On a Hilbert curve neighbours are about √m apart on average and mostly very near; in random order they are m/3 apart. A regular mesh row by row has a small
-	# mean too, but from each row to the next the way is long.
+	# On a Hilbert curve neighbours are about √m apart on average and mostly very near; in random order they are m/3
+	# apart. A regular mesh row by row has a small mean too, but from each row to the next the way is long.
 	assert index_distances(order).mean() < 1.2 * np.sqrt(len(block.triangles))
 	assert index_distances(order).mean() < 0.02 * index_distances(mixed).mean()
 	assert np.median(index_distances(order)) <= 3
@@ -126,7 +136,10 @@ def test_reordered_brings_neighbours_together():
 
 
 def test_reordered_is_the_same_mesh_in_a_canonical_order():
-	block = mesh.rectangle(0.1, 0.2, size=0.005, pattern="unstructured", regions={"steel": BAR, "core": mesh.box(0.047, 0.097, 0.053, 0.103)})
+	block = mesh.rectangle(
+		0.1, 0.2, size=0.005, pattern="unstructured",
+		regions={"steel": BAR, "core": mesh.box(0.047, 0.097, 0.053, 0.103)}
+	)
 	first, again, other = block.reordered(), block.reordered(), shuffled(block, 2).reordered()
 	assert corners(first) == corners(block)
 	assert first.triangles.tobytes() == again.triangles.tobytes() and first.nodes.tobytes() == again.nodes.tobytes()
@@ -141,24 +154,56 @@ def test_reordered_is_the_same_mesh_in_a_canonical_order():
 
 
 @pytest.mark.parametrize(
-	"nodes, triangles, message", [
-		([*NODES, (2, 0)], [*TRIANGLES, (0, 4, 1)], r"triangle 2 with corners \(0, 0\) \(2, 0\) \(4, 0\) m has no area; remove it"),
+	"nodes, triangles, message",
+	[
+		(
+			[*NODES, (2, 0)],
+			[*TRIANGLES, (0, 4, 1)],
+			r"triangle 2 with corners \(0, 0\) \(2, 0\) \(4, 0\) m has no area; remove it",
+		),
 		(NODES, [*TRIANGLES, (0, 0, 1)], r"triangle 2 .* has no area"),
-		(NODES, [(0, 1, 2), (0, 3, 2)], r"triangle 1 with corners \(0, 0\) \(0, 3\) \(4, 3\) m is clockwise; .*mesh.flipped\(\).*orient=True"),
+		(
+			NODES,
+			[(0, 1, 2), (0, 3, 2)],
+			(
+				r"triangle 1 with corners \(0, 0\) \(0, 3\) \(4, 3\) m is clockwise; "
+				r".*mesh.flipped\(\).*orient=True"
+			),
+		),
 		(NODES, [(2, 1, 0), (0, 3, 2)], r"triangle 0 .* is clockwise \(and 1 more\)"),
 		(NODES, [*TRIANGLES, (2, 0, 1)], r"triangle 2 .* is the same as triangle 0; remove one"),
 		([*NODES, (9, 9)], TRIANGLES, r"node 4 at \(9, 9\) m belongs to no triangle"),
-		([*NODES, (4, 3), (0, 0)], [(0, 1, 2), (5, 4, 3)], r"nodes 0 and 5 are both at \(0, 0\) m \(and 1 more\)"),
+		(
+			[*NODES, (4, 3), (0, 0)],
+			[(0, 1, 2), (5, 4, 3)],
+			r"nodes 0 and 5 are both at \(0, 0\) m \(and 1 more\)",
+		),
 		([*NODES, (4, 3 + 1e-12), (4, 6)], [*TRIANGLES, (3, 4, 5)], r"nodes 2 and 4 are both at \(4, 3\) m"),
 		([*NODES, (2, 4), (3, 5)], [*TRIANGLES, (0, 2, 4)], r"belongs to no triangle"),
-		([*NODES, (2, 4), (3, 5)], [*TRIANGLES, (0, 2, 4), (0, 2, 5)], r"edge between nodes 0 and 2, \(0, 0\) m to \(4, 3\) m, belongs to 4 triangles \(0, 1, 2, 3\); at most two"),
+		(
+			[*NODES, (2, 4), (3, 5)],
+			[*TRIANGLES, (0, 2, 4), (0, 2, 5)],
+			(
+				r"edge between nodes 0 and 2, \(0, 0\) m to \(4, 3\) m, belongs to 4 triangles \(0, "
+				r"1, 2, 3\); at most two"
+			),
+		),
 		([*NODES, (2, 1), (3, 1), (3, 2)], [*TRIANGLES, (4, 5, 6)], r"triangle 0 .* overlaps triangle 2"),
-		([*NODES, (1, 1.2), (2.5, 1), (2, 2.3)], [*TRIANGLES, (4, 5, 6)], r"triangle 0 .* overlaps triangle 2"),  # and triangle 1
+		# and triangle 1
+		([*NODES, (1, 1.2), (2.5, 1), (2, 2.3)], [*TRIANGLES, (4, 5, 6)], r"triangle 0 .* overlaps triangle 2"),
 		([*NODES, (2, 1), (6, 1), (6, 2)], [*TRIANGLES, (4, 5, 6)], r"triangle 0 .* overlaps triangle 2"),
-		([*NODES, (4, 1), (6, 1)], [*TRIANGLES, (1, 5, 4)], r"node 4 at \(4, 1\) m of triangle 2 lies on an edge of triangle 0 .* split that triangle"),
-		([*NODES, (4 + 1e-12, 1), (6, 1)], [*TRIANGLES, (1, 5, 4)], r"node 4 at \(4, 1\) m of triangle 2 lies on an edge of triangle 0"),
+		(
+			[*NODES, (4, 1), (6, 1)],
+			[*TRIANGLES, (1, 5, 4)],
+			r"node 4 at \(4, 1\) m of triangle 2 lies on an edge of triangle 0 .* split that triangle",
+		),
+		(
+			[*NODES, (4 + 1e-12, 1), (6, 1)],
+			[*TRIANGLES, (1, 5, 4)],
+			r"node 4 at \(4, 1\) m of triangle 2 lies on an edge of triangle 0",
+		),
 		([(0, 0), (1, 0), (0.5, 1e-11)], [(0, 1, 2)], r"has no area"),
-	]
+	],
 )
 def test_invalid_meshes_are_refused_with_triangle_and_place(nodes, triangles, message):
 	with pytest.raises(ValueError, match=message):
@@ -167,17 +212,38 @@ def test_invalid_meshes_are_refused_with_triangle_and_place(nodes, triangles, me
 
 @pytest.mark.parametrize(
 	"arguments, message", [
-		(dict(nodes=[(0, 0), (1, np.nan), (0, 1)], triangles=[(0, 1, 2)]), r"node 1 is at \(1, nan\) m: coordinates must be finite"),
-		(dict(nodes=[(0, 0, 0)] * 3, triangles=[(0, 1, 2)]), r"nodes must be \(n, 2\) coordinates \[m\], not an array of shape \(3, 3\)"),
-		(dict(nodes=NODES, triangles=[(0, 1, 4)]), r"triangle 0 has nodes \(0, 1, 4\), but nodes are numbered from 0 to 3"),
+		(
+			dict(nodes=[(0, 0), (1, np.nan), (0, 1)], triangles=[(0, 1, 2)]),
+			r"node 1 is at \(1, nan\) m: coordinates must be finite",
+		),
+		(
+			dict(nodes=[(0, 0, 0)] * 3, triangles=[(0, 1, 2)]),
+			r"nodes must be \(n, 2\) coordinates \[m\], not an array of shape \(3, 3\)",
+		),
+		(
+			dict(nodes=NODES, triangles=[(0, 1, 4)]),
+			r"triangle 0 has nodes \(0, 1, 4\), but nodes are numbered from 0 to 3",
+		),
 		(dict(nodes=NODES, triangles=[(0, 1, 2), (0, -1, 2)]), r"triangle 1 has nodes \(0, -1, 2\)"),
 		(dict(nodes=NODES, triangles=[(0, 1, 2.5)]), r"integer node indices, not float64"),
 		(dict(nodes=NODES, triangles=[(0, 1, 2, 3)]), r"of shape \(1, 4\)"),
 		(dict(nodes=NODES, triangles=np.empty((0, 3), dtype=int)), r"at least one triangle"),
-		(dict(nodes=NODES, triangles=TRIANGLES, regions=[0]), r"one integer a triangle \(2\), not .* of shape \(1,\)"),
-		(dict(nodes=NODES, triangles=TRIANGLES, regions=[0, 1]), r"triangle 1 is in region 1, but region_names has 1 names"),
-		(dict(nodes=NODES, triangles=TRIANGLES, region_names=("steel",)), r"region_names must be different strings, the first of them \"\""),
-		(dict(nodes=NODES, triangles=TRIANGLES, region_names=("", "a", "a")), r"region_names must be different strings"),
+		(
+			dict(nodes=NODES, triangles=TRIANGLES, regions=[0]),
+			r"one integer a triangle \(2\), not .* of shape \(1,\)",
+		),
+		(
+			dict(nodes=NODES, triangles=TRIANGLES, regions=[0, 1]),
+			r"triangle 1 is in region 1, but region_names has 1 names",
+		),
+		(
+			dict(nodes=NODES, triangles=TRIANGLES, region_names=("steel",)),
+			r"region_names must be different strings, the first of them \"\"",
+		),
+		(
+			dict(nodes=NODES, triangles=TRIANGLES, region_names=("", "a", "a")),
+			r"region_names must be different strings",
+		),
 	]
 )
 def test_arrays_of_the_wrong_kind_are_refused(arguments, message):
@@ -193,7 +259,10 @@ def test_slivers_and_meeting_corners_are_valid():
 
 def test_flipped_and_orient_turn_only_clockwise_triangles():
 	wrong = mesh.Mesh(NODES, [(0, 1, 2), (0, 3, 2)], regions=[0, 1], region_names=("", "upper"))
-	for right in (wrong.flipped().validate(), mesh.Mesh(NODES, wrong.triangles, [0, 1], ("", "upper"), orient=True).validate()):
+	for right in (
+		wrong.flipped().validate(),
+		mesh.Mesh(NODES, wrong.triangles, [0, 1], ("", "upper"), orient=True).validate(),
+	):
 		assert right.triangles.tolist() == [[0, 1, 2], [2, 3, 0]]
 		assert right.areas == pytest.approx([6, 6])
 		assert right.region("upper").tolist() == [1]

@@ -30,7 +30,8 @@ def test_gmsh_file(name):
 	plate = mesh.read(os.path.join(DATA, name))
 	assert plate.region_names == ("", "bar", "plate")
 	assert plate.areas[plate.region("bar")].sum() == pytest.approx(0.25)
-	# Gmsh puts about 2 pi r / size = 6.3 nodes on the circle, rounded up to an even number: the hole is a regular polygon.
+	# Gmsh puts about 2 pi r / size = 6.3 nodes on the circle, rounded up to an even number:
+	# the hole is a regular polygon.
 	rim = len(plate.boundary(lambda x, y: np.abs(np.hypot(x - 1.5, y - 0.5) - 0.25) < 1e-9))
 	assert 6 <= rim <= 12
 	assert plate.areas.sum() == pytest.approx(2 - 0.5 * rim * 0.25**2 * math.sin(2 * math.pi / rim))
@@ -39,7 +40,10 @@ def test_gmsh_file(name):
 
 @pytest.mark.parametrize("ending", ["msh", "vtu", "vtk"])
 def test_round_trip(tmp_path, ending):
-	block = mesh.rectangle(0.1, 0.2, size=0.01, pattern="unstructured", regions={"steel bar": BAR, "foot": mesh.box(0, 0, 0.1, 0.03)})
+	block = mesh.rectangle(
+		0.1, 0.2, size=0.01, pattern="unstructured",
+		regions={"steel bar": BAR, "foot": mesh.box(0, 0, 0.1, 0.03)}
+	)
 	block.write(tmp_path / f"block.{ending}")
 	again = mesh.read(tmp_path / f"block.{ending}")
 	assert again.nodes.tolist() == block.nodes.tolist()
@@ -58,8 +62,15 @@ def test_gmsh_can_read_what_is_written(tmp_path):
 
 def test_nameless_groups_and_unused_points(tmp_path):
 	points = [(9, 9, 0), (0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
-	tags = {"gmsh:physical": [np.array([7]), np.array([0, 7])], "gmsh:geometrical": [np.array([1]), np.array([1, 1])]}
-	meshio.write(tmp_path / "a.msh", meshio.Mesh(points, [("line", [(1, 2)]), ("triangle", [(1, 2, 3), (1, 3, 4)])], cell_data=tags), file_format="gmsh22")
+	tags = {
+		"gmsh:physical": [np.array([7]), np.array([0, 7])],
+		"gmsh:geometrical": [np.array([1]), np.array([1, 1])],
+	}
+	meshio.write(
+		tmp_path / "a.msh",
+		meshio.Mesh(points, [("line", [(1, 2)]), ("triangle", [(1, 2, 3), (1, 3, 4)])], cell_data=tags),
+		file_format="gmsh22",
+	)
 	square = mesh.read(tmp_path / "a.msh")
 	assert square.nodes.tolist() == [[0, 0], [1, 0], [1, 1], [0, 1]]
 	assert square.region_names == ("", "physical 7")
@@ -80,7 +91,13 @@ def test_truncated_gmsh_file(tmp_path, name, part):
 def test_truncated_file_names_section_and_line(tmp_path):
 	lines = content("plate22.msh").splitlines(keepends=True)
 	opened = lines.index(b"$Nodes\n") + 1
-	with pytest.raises(ValueError, match=rf"line {opened + 21}: the file ends within \$Nodes, which began in line {opened}; it is truncated"):
+	with pytest.raises(
+		ValueError,
+		match=(
+			rf"line {opened + 21}: the file ends within \$Nodes, which began in line {opened}; "
+			rf"it is truncated"
+		),
+	):
 		mesh.read(saved(tmp_path, b"".join(lines[:opened + 20])))
 
 
@@ -88,7 +105,9 @@ def test_missing_line_is_noticed(tmp_path):
 	lines = content("plate22.msh").splitlines(keepends=True)
 	opened = lines.index(b"$Elements\n") + 1
 	del lines[opened + 10]
-	with pytest.raises(ValueError, match=rf"line {opened + 1}: \$Elements announces [0-9]+ lines, but [0-9]+ follow"):
+	with pytest.raises(
+		ValueError, match=rf"line {opened + 1}: \$Elements announces [0-9]+ lines, but [0-9]+ follow"
+	):
 		mesh.read(saved(tmp_path, b"".join(lines)))
 
 
@@ -131,10 +150,22 @@ FLAT = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
 @pytest.mark.parametrize(
 	"points, cells, message", [
 		(FLAT, [("quad", [(0, 1, 2, 3)])], r"cells of type quad; only plane triangles can be used; split them"),
-		([*FLAT, (0.5, 0, 0), (1, 0.5, 0), (0.5, 0.5, 0)], [("triangle6", [(0, 1, 2, 4, 5, 6)])], r"cells of type triangle6; .*first order"),
+		(
+			[*FLAT, (0.5, 0, 0), (1, 0.5, 0), (0.5, 0.5, 0)],
+			[("triangle6", [(0, 1, 2, 4, 5, 6)])],
+			r"cells of type triangle6; .*first order",
+		),
 		(FLAT, [("line", [(0, 1)])], r"has no triangles"),
-		([(0, 0, 0), (1, 0, 0), (1, 1, 0.1)], [("triangle", [(0, 1, 2)])], r"not in the x-y plane: z goes from 0 to 0.1 m; only plane"),
-		([(0, 0, 0), (1, 0, 0), (1, 0, 1)], [("triangle", [(0, 1, 2)])], r"z goes from 0 to 1 m; the mesh lies in another plane"),
+		(
+			[(0, 0, 0), (1, 0, 0), (1, 1, 0.1)],
+			[("triangle", [(0, 1, 2)])],
+			r"not in the x-y plane: z goes from 0 to 0.1 m; only plane",
+		),
+		(
+			[(0, 0, 0), (1, 0, 0), (1, 0, 1)],
+			[("triangle", [(0, 1, 2)])],
+			r"z goes from 0 to 1 m; the mesh lies in another plane",
+		),
 		(FLAT, [("triangle", [(0, 2, 1)])], r"triangle 0 with corners .* is clockwise"),
 		(FLAT, [("triangle", [(0, 1, 2), (0, 1, 3)])], r"triangle 0 .* overlaps triangle 1"),
 	]
@@ -146,5 +177,8 @@ def test_unusable_meshes_are_refused(tmp_path, points, cells, message):
 
 
 def test_clockwise_file_can_be_oriented(tmp_path):
-	meshio.write(tmp_path / "a.vtu", meshio.Mesh([(x, y, 5) for x, y, _ in FLAT], [("triangle", np.array([(0, 2, 1), (0, 2, 3)]))]))
+	meshio.write(
+		tmp_path / "a.vtu",
+		meshio.Mesh([(x, y, 5) for x, y, _ in FLAT], [("triangle", np.array([(0, 2, 1), (0, 2, 3)]))]),
+	)
 	assert mesh.read(tmp_path / "a.vtu", orient=True).areas == pytest.approx([0.5, 0.5])

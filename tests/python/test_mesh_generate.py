@@ -11,7 +11,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from mesh_samples import ANGLED, BAR, HOLE, SAMPLES, circumference, shoelace, towards_hole
 
-GUARANTEED_ANGLE = 20.6  # degrees; CGAL manual, "2D Conforming Triangulations and Meshes": sin² of the smallest angle is at least 1/8
+# degrees; CGAL manual, "2D Conforming Triangulations and Meshes": sin² of the smallest angle is at least 1/8
+GUARANTEED_ANGLE = 20.6
 
 
 @pytest.fixture(params=SAMPLES, scope="module")
@@ -57,7 +58,11 @@ def test_inner_edges_have_two_triangles_and_the_border_is_closed(sample):
 
 
 def test_euler_characteristic(sample):
-	nodes, edges, triangles = len(sample.mesh.nodes), len(edge_counts(sample.mesh.triangles)), len(sample.mesh.triangles)
+	nodes, edges, triangles = (
+		len(sample.mesh.nodes),
+		len(edge_counts(sample.mesh.triangles)),
+		len(sample.mesh.triangles),
+	)
 	assert nodes - edges + triangles == 1 - len(sample.holes)
 
 
@@ -78,13 +83,16 @@ def test_generated_meshes_are_valid(sample):
 
 
 def test_smallest_angle(sample):
-	assert sample.mesh.angles.min() >= (GUARANTEED_ANGLE if sample.generated else 26.5)  # atan(1/2) where odd cells are not square
+	# atan(1/2) where odd cells are not square
+	assert sample.mesh.angles.min() >= (GUARANTEED_ANGLE if sample.generated else 26.5)
 
 
 def test_regions_are_exact(sample):
 	for name, shape in sample.regions.items():
 		taken = sum(shoelace([*hole]) for hole in sample.holes) if name == "lining" else 0
-		assert sample.mesh.areas[sample.mesh.region(name)].sum() == pytest.approx(shoelace([*shape]) - taken, rel=1e-9)
+		assert sample.mesh.areas[sample.mesh.region(name)].sum() == pytest.approx(
+			shoelace([*shape]) - taken, rel=1e-9
+		)
 
 
 def test_neighbours_share_an_edge_and_know_each_other(sample):
@@ -146,7 +154,10 @@ def test_warning_when_regular_mesh_misses_a_region():
 		mesh.rectangle(0.1, 0.2, size=0.005, pattern="unstructured", regions={"steel": BAR})
 
 
-@given(st.integers(1, 12), st.integers(1, 12), st.floats(0.01, 100), st.floats(0.01, 100), st.sampled_from(["crossed", "alternating"]))
+@given(
+	st.integers(1, 12), st.integers(1, 12), st.floats(0.01, 100), st.floats(0.01, 100),
+	st.sampled_from(["crossed", "alternating"])
+)
 @settings(max_examples=25)
 def test_any_regular_mesh(nx, ny, width, height, pattern):
 	block = mesh.rectangle(width, height, nx=nx, ny=ny, pattern=pattern)
@@ -170,7 +181,9 @@ def test_mean_edge_length_is_the_size(smoothing):
 def test_border_is_cut_evenly():
 	# Halving 0.1 m until it is short enough would give pieces of 6.25 mm.
 	block = mesh.polygon(mesh.box(0, 0, 0.1, 0.1), size=0.005)
-	assert np.linalg.norm(np.diff(block.nodes[block.boundary_edges()], axis=1)[:, 0], axis=1) == pytest.approx(0.005)
+	assert np.linalg.norm(np.diff(block.nodes[block.boundary_edges()], axis=1)[:, 0], axis=1) == pytest.approx(
+		0.005
+	)
 	wedge = mesh.polygon(mesh.box(0, 0, 0.1, 0.1), size=lambda x, y: 0.002 + 0.1 * x)
 	ends = wedge.nodes[wedge.boundary_edges()]
 	pieces = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / (0.002 + 0.1 * ends[:, :, 0].mean(axis=1))
@@ -186,7 +199,8 @@ def test_size_field_is_followed(smoothing):
 	assert (plate.edge_lengths.max(axis=1) <= 1.8 * wanted).all()
 	middle = np.median(plate.sizes / wanted)
 	assert 0.8 < middle < 1.2
-	for low, high in ((0, 0.002), (0.002, 0.005), (0.005, 0.05)):  # not finer than asked for, in no part of the range
+	# not finer than asked for, in no part of the range
+	for low, high in ((0, 0.002), (0.002, 0.005), (0.005, 0.05)):
 		part = (wanted > low) & (wanted <= high)
 		assert part.sum() > 50
 		assert 0.75 < np.mean(plate.sizes[part] / wanted[part]) < 1.25
@@ -209,7 +223,11 @@ def test_smoothing_evens_angles_out():
 def test_angle_bound_holds_after_smoothing_of_steep_fields(smoothing):
 	# Smoothing alone leaves angles down to 16 degrees here.
 	for corners in range(5, 12):
-		m = mesh.polygon(mesh.disc(0, 0, 1, corners), size=lambda x, y: 0.02 + 0.9 * math.hypot(x - 0.1, y), smoothing=smoothing)
+		m = mesh.polygon(
+			mesh.disc(0, 0, 1, corners),
+			size=lambda x, y: 0.02 + 0.9 * math.hypot(x - 0.1, y),
+			smoothing=smoothing,
+		)
 		assert m.angles.min() >= GUARANTEED_ANGLE
 
 
@@ -220,10 +238,17 @@ def test_smoothing_keeps_to_the_size_field():
 
 
 def test_nested_regions_and_borders_in_common():
-	regions = {"outer": mesh.box(0, 0, 0.6, 1), "inner": mesh.box(0.2, 0.2, 0.4, 0.4), "beside": mesh.box(0.6, 0.5, 1, 1), "slanted": [(0.7, 0.1), (0.9, 0.2), (0.8, 0.4)]}
+	regions = {
+		"outer": mesh.box(0, 0, 0.6, 1),
+		"inner": mesh.box(0.2, 0.2, 0.4, 0.4),
+		"beside": mesh.box(0.6, 0.5, 1, 1),
+		"slanted": [(0.7, 0.1), (0.9, 0.2), (0.8, 0.4)],
+	}
 	plate = mesh.polygon(mesh.box(0, 0, 1, 1), size=0.1, regions=regions)
 	areas = {name: plate.areas[plate.region(name)].sum() for name in plate.region_names}
-	assert areas == pytest.approx({"": 0.2 - 0.025, "outer": 0.6 - 0.04, "inner": 0.04, "beside": 0.2, "slanted": 0.025})
+	assert areas == pytest.approx(
+		{"": 0.2 - 0.025, "outer": 0.6 - 0.04, "inner": 0.04, "beside": 0.2, "slanted": 0.025}
+	)
 
 
 def test_region_corner_on_a_slanted_edge_makes_no_sliver():
@@ -236,11 +261,18 @@ def test_region_corner_on_a_slanted_edge_makes_no_sliver():
 
 
 def test_same_input_gives_the_same_mesh():
-	make = lambda **options: mesh.polygon(mesh.disc(0, 0, 1, 40), holes=[mesh.disc(0.3, 0, 0.2, 20)], size=0.08, **options)
+	make = lambda **options: mesh.polygon(
+		mesh.disc(0, 0, 1, 40), holes=[mesh.disc(0.3, 0, 0.2, 20)], size=0.08, **options
+	)
 	first = make()
-	others = [mesh.rectangle(1, 1, size=0.03 + 0.001 * i, pattern="unstructured") for i in range(3)]  # so that memory is laid out differently
+	# so that memory is laid out differently
+	others = [mesh.rectangle(1, 1, size=0.03 + 0.001 * i, pattern="unstructured") for i in range(3)]
 	again = make()
-	assert others and first.nodes.tobytes() == again.nodes.tobytes() and first.triangles.tobytes() == again.triangles.tobytes()
+	assert (
+		others
+		and first.nodes.tobytes() == again.nodes.tobytes()
+		and first.triangles.tobytes() == again.triangles.tobytes()
+	)
 	drawn, redrawn, other = make(seed=1), make(seed=1), make(seed=2)
 	assert drawn.nodes.tobytes() == redrawn.nodes.tobytes()
 	assert len({m.nodes.tobytes() for m in (first, drawn, other)}) == 3
@@ -248,13 +280,20 @@ def test_same_input_gives_the_same_mesh():
 		assert m.quality().mean_edge == pytest.approx(first.quality().mean_edge, rel=0.03)
 
 
-@given(st.integers(6, 12).flatmap(lambda n: st.lists(st.floats(0.7, 1.3), min_size=n, max_size=n)), st.floats(0.1, 10), st.floats(0.05, 3))
+@given(
+	st.integers(6, 12).flatmap(lambda n: st.lists(st.floats(0.7, 1.3), min_size=n, max_size=n)),
+	st.floats(0.1, 10),
+	st.floats(0.05, 3),
+)
 @settings(max_examples=30)
 def test_any_convex_polygon(gaps, radius, relative_size):
 	directions = 2 * math.pi * np.cumsum(gaps) / sum(gaps)
 	corners = radius * np.column_stack([np.cos(directions), 0.8 * np.sin(directions)])
 	sides = np.roll(corners, -1, axis=0) - corners
-	corner_angles = [180 - math.degrees(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b)) for a, b in zip(sides, np.roll(sides, -1, axis=0))]
+	corner_angles = [
+		180 - math.degrees(math.atan2(a[0] * b[1] - a[1] * b[0], a @ b))
+		for a, b in zip(sides, np.roll(sides, -1, axis=0))
+	]
 	assume(min(corner_angles) >= 60)  # the guarantee's condition
 	m = mesh.polygon(corners, size=relative_size * radius)
 	m.validate()
@@ -263,13 +302,20 @@ def test_any_convex_polygon(gaps, radius, relative_size):
 	assert len(m.nodes) - len(m.edges) + len(m.triangles) == 1
 
 
-@given(st.integers(3, 9).flatmap(lambda n: st.lists(st.tuples(st.floats(0.5, 1.5), st.floats(0.3, 1)), min_size=n, max_size=n)), st.floats(0.1, 1))
+@given(
+	st.integers(3, 9).flatmap(
+		lambda n: st.lists(st.tuples(st.floats(0.5, 1.5), st.floats(0.3, 1)), min_size=n, max_size=n)
+	),
+	st.floats(0.1, 1),
+)
 @settings(max_examples=30)
 def test_any_star_shaped_polygon(arms, size):
 	# Corners as sharp and as deep as they come: no angle is promised, but the mesh is a proper one.
 	directions = 2 * math.pi * np.cumsum([gap for gap, _ in arms]) / sum(gap for gap, _ in arms)
 	assume(np.diff(np.append(directions, directions[0] + 2 * math.pi)).max() < 3)
-	corners = np.array([length for _, length in arms])[:, None] * np.column_stack([np.cos(directions), np.sin(directions)])
+	corners = np.array([length for _, length in arms])[:, None] * np.column_stack(
+		[np.cos(directions), np.sin(directions)]
+	)
 	m = mesh.polygon(corners, size=size)
 	m.validate()
 	assert m.areas.sum() == pytest.approx(shoelace([*corners]), rel=1e-9)
@@ -298,48 +344,145 @@ SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 		(lambda: mesh.rectangle(1, 1, -0.1), r"size.* is -0.1 m"),
 		(lambda: mesh.rectangle(1, 1, math.inf), r"size.* is inf m"),
 		(lambda: mesh.rectangle(1, 1), r"size \(or give nx\) is None m"),
-		(lambda: mesh.rectangle(1, 1, 0.1, pattern="hexagons"), r"pattern 'hexagons'; use one of crossed, alternating, unstructured"),
+		(
+			lambda: mesh.rectangle(1, 1, 0.1, pattern="hexagons"),
+			r"pattern 'hexagons'; use one of crossed, alternating, unstructured",
+		),
 		(lambda: mesh.rectangle(1, 1, nx=2.5, ny=1), r"nx is 2.5; .*whole number"),
 		(lambda: mesh.rectangle(1, 1, nx=0, ny=1), r"nx is 0"),
-		(lambda: mesh.rectangle(1, 1, 1e-5), r"1e\+05 x 1e\+05|100000 x 100000 cells would give about 4e\+10 triangles"),
+		(
+			lambda: mesh.rectangle(1, 1, 1e-5),
+			r"1e\+05 x 1e\+05|100000 x 100000 cells would give about 4e\+10 triangles",
+		),
 		(lambda: mesh.rectangle(1, 1, 1e-300), r"limit"),
 		(lambda: mesh.rectangle(1, 1, lambda x, y: 0.1), r"size field needs pattern=\"unstructured\""),
 		(lambda: mesh.rectangle(1, 1, 0.1, smoothing=3), r"smoothing only for pattern=\"unstructured\""),
 		(lambda: mesh.rectangle(1, 1, 0.1, pattern="unstructured", nx=3), r"nx and ny"),
-		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(0.5, 0.5, 1.5, 0.7)}), r"outline and region 'a' cross at \(1, 0.[57]\) m"),
-		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(2, 0, 3, 1)}), r"region 'a' lies outside of the outline at \(2.5, 0\) m; the outline spans \(0, 0\) to \(1, 1\) m"),
-		(lambda: mesh.rectangle(1, 1, 0.1, regions={"a": [(0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.9, 0.8)]}), r"region 'a' crosses itself"),
-		(lambda: mesh.rectangle(1, 1, 0.5, regions={"a": mesh.box(0.01, 0.01, 0.02, 0.02)}), r"region 'a'.* no triangle's centroid; use a smaller size"),
+		(
+			lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(0.5, 0.5, 1.5, 0.7)}),
+			r"outline and region 'a' cross at \(1, 0.[57]\) m",
+		),
+		(
+			lambda: mesh.rectangle(1, 1, 0.1, regions={"a": mesh.box(2, 0, 3, 1)}),
+			(
+				r"region 'a' lies outside of the outline at \(2.5, 0\) m; the outline spans \(0, 0\) "
+				r"to \(1, 1\) m"
+			),
+		),
+		(
+			lambda: mesh.rectangle(
+				1, 1, 0.1, regions={"a": [(0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.9, 0.8)]}
+			),
+			r"region 'a' crosses itself",
+		),
+		(
+			lambda: mesh.rectangle(1, 1, 0.5, regions={"a": mesh.box(0.01, 0.01, 0.02, 0.02)}),
+			r"region 'a'.* no triangle's centroid; use a smaller size",
+		),
 		(lambda: mesh.rectangle(1, 1, 0.1, regions={"": BAR}), r"region name ''"),
 		(lambda: mesh.polygon(SQUARE, size=0), r"size is 0 m"),
 		(lambda: mesh.polygon(SQUARE, size=math.nan), r"size is nan m"),
 		(lambda: mesh.polygon(SQUARE), r"size is None m"),
-		(lambda: mesh.polygon(SQUARE, size=lambda x, y: x - 0.5), r"size field gives -?[0-9.e-]+ m at \(.*\) m"),
+		(
+			lambda: mesh.polygon(SQUARE, size=lambda x, y: x - 0.5),
+			r"size field gives -?[0-9.e-]+ m at \(.*\) m",
+		),
 		(lambda: mesh.polygon(SQUARE, size=lambda x, y: "small"), r"size field gives nan m"),
 		(lambda: mesh.polygon(SQUARE, size=0.1, min_angle=25), r"min_angle is 25 degrees; .* 20.70 degrees"),
 		(lambda: mesh.polygon(SQUARE, size=0.1, min_angle=math.nan), r"min_angle is nan degrees"),
 		(lambda: mesh.polygon(SQUARE, size=0.1, smoothing=-1), r"smoothing is -1"),
 		(lambda: mesh.polygon(SQUARE, size=0.1, seed=-1), r"seed is -1"),
-		(lambda: mesh.polygon(SQUARE, size=1e-5), r"size 1e-05 m would give about 2.4e\+10 triangles, more than the limit of 5e\+06; use a larger size"),
+		(
+			lambda: mesh.polygon(SQUARE, size=1e-5),
+			(
+				r"size 1e-05 m would give about 2.4e\+10 triangles, more than the limit of 5e\+06; "
+				r"use a larger size"
+			),
+		),
 		(lambda: mesh.polygon(SQUARE, size=0.1, limit=10), r"more than the limit of 10"),
 		(lambda: mesh.polygon(SQUARE[:2], size=0.1), r"outline: 2 different corners"),
 		(lambda: mesh.polygon("square", size=0.1), r"outline: needs a list of corners"),
 		(lambda: mesh.polygon([(0, 0), (1, 1), (2, 2)], size=0.1), r"outline: its area is zero"),
-		(lambda: mesh.polygon([(0, 0), (1, math.nan), (1, 1)], size=0.1), r"outline: corner 1 is \(1.0, nan\) m"),
-		(lambda: mesh.polygon([(0, 0), (1, 0), (0, 1), (2, 1)], size=0.1), r"outline crosses itself at \(0.666667, 0.333333\) m"),
-		(lambda: mesh.polygon([(0, 0), (1, 0), (1, 1), (0.5, 0), (0, 1)], size=0.1), r"outline touches itself at \(0.5, 0\) m"),
-		(lambda: mesh.polygon([(0, 0), (1, 0), (0.5, 0.5), (1, 1), (0, 1), (0.5, 0.5)], size=0.1), r"outline touches itself at corner 5, \(0.5, 0.5\) m"),
-		(lambda: mesh.polygon(SQUARE, holes=[mesh.disc(2, 2, 0.1)], size=0.1), r"hole 0 lies outside of the outline at \(2"),
-		(lambda: mesh.polygon(SQUARE, holes=[mesh.disc(1, 0.5, 0.1)], size=0.1), r"outline and hole 0 cross at|hole 0 touches outline at"),
-		(lambda: mesh.polygon(SQUARE, holes=[mesh.box(0.5, 0, 0.6, 0.2)], size=0.1), r"hole 0 touches outline at \(0.5, 0\) m"),
-		(lambda: mesh.polygon(SQUARE, holes=[mesh.disc(0.4, 0.5, 0.1), mesh.disc(0.5, 0.5, 0.1, 47)], size=0.1), r"hole 0 and hole 1 cross"),
-		(lambda: mesh.polygon(SQUARE, holes=[mesh.disc(0.5, 0.5, 0.3), mesh.disc(0.5, 0.5, 0.1)], size=0.1), r"hole 1 lies in hole 0"),
-		(lambda: mesh.polygon(SQUARE, size=0.1, regions={"a": mesh.box(2, 2, 3, 3)}), r"region 'a' lies outside of the outline"),
-		(lambda: mesh.polygon(SQUARE, size=0.1, regions={"a": mesh.box(0.5, 0.5, 3, 0.6)}), r"outline and region 'a' cross at \(1, 0.[56]\) m"),
-		(lambda: mesh.polygon(SQUARE, size=0.1, regions={"a": mesh.box(0.2, 0.2, 0.6, 0.6), "b": mesh.box(0.5, 0.5, 0.8, 0.8)}), r"region 'a' and region 'b' cross"),
-		(lambda: mesh.polygon(SQUARE, size=0.1, holes=[mesh.disc(0.5, 0.5, 0.2)], regions={"a": mesh.disc(0.5, 0.5, 0.1)}), r"region 'a' lies in hole 0"),
-		(lambda: mesh.polygon(SQUARE, size=0.1, holes=[mesh.disc(0.5, 0.5, 0.2)], regions={"a": mesh.disc(0.5, 0.5, 0.2)}), r"region 'a'.* no triangle"),
-		(lambda: mesh.polygon(ANGLED, size=0.01, regions={"a": [(0.1, 0.04), (0.04, 0.1), (0.04, 0.04)]}), r"region 'a' lies outside of the outline at \(0.07, 0.07\) m"),
+		(
+			lambda: mesh.polygon([(0, 0), (1, math.nan), (1, 1)], size=0.1),
+			r"outline: corner 1 is \(1.0, nan\) m",
+		),
+		(
+			lambda: mesh.polygon([(0, 0), (1, 0), (0, 1), (2, 1)], size=0.1),
+			r"outline crosses itself at \(0.666667, 0.333333\) m",
+		),
+		(
+			lambda: mesh.polygon([(0, 0), (1, 0), (1, 1), (0.5, 0), (0, 1)], size=0.1),
+			r"outline touches itself at \(0.5, 0\) m",
+		),
+		(
+			lambda: mesh.polygon([(0, 0), (1, 0), (0.5, 0.5), (1, 1), (0, 1), (0.5, 0.5)], size=0.1),
+			r"outline touches itself at corner 5, \(0.5, 0.5\) m",
+		),
+		(
+			lambda: mesh.polygon(SQUARE, holes=[mesh.disc(2, 2, 0.1)], size=0.1),
+			r"hole 0 lies outside of the outline at \(2",
+		),
+		(
+			lambda: mesh.polygon(SQUARE, holes=[mesh.disc(1, 0.5, 0.1)], size=0.1),
+			r"outline and hole 0 cross at|hole 0 touches outline at",
+		),
+		(
+			lambda: mesh.polygon(SQUARE, holes=[mesh.box(0.5, 0, 0.6, 0.2)], size=0.1),
+			r"hole 0 touches outline at \(0.5, 0\) m",
+		),
+		(
+			lambda: mesh.polygon(
+				SQUARE, holes=[mesh.disc(0.4, 0.5, 0.1), mesh.disc(0.5, 0.5, 0.1, 47)], size=0.1
+			),
+			r"hole 0 and hole 1 cross",
+		),
+		(
+			lambda: mesh.polygon(
+				SQUARE, holes=[mesh.disc(0.5, 0.5, 0.3), mesh.disc(0.5, 0.5, 0.1)], size=0.1
+			),
+			r"hole 1 lies in hole 0",
+		),
+		(
+			lambda: mesh.polygon(SQUARE, size=0.1, regions={"a": mesh.box(2, 2, 3, 3)}),
+			r"region 'a' lies outside of the outline",
+		),
+		(
+			lambda: mesh.polygon(SQUARE, size=0.1, regions={"a": mesh.box(0.5, 0.5, 3, 0.6)}),
+			r"outline and region 'a' cross at \(1, 0.[56]\) m",
+		),
+		(
+			lambda: mesh.polygon(
+				SQUARE,
+				size=0.1,
+				regions={"a": mesh.box(0.2, 0.2, 0.6, 0.6), "b": mesh.box(0.5, 0.5, 0.8, 0.8)},
+			),
+			r"region 'a' and region 'b' cross",
+		),
+		(
+			lambda: mesh.polygon(
+				SQUARE,
+				size=0.1,
+				holes=[mesh.disc(0.5, 0.5, 0.2)],
+				regions={"a": mesh.disc(0.5, 0.5, 0.1)},
+			),
+			r"region 'a' lies in hole 0",
+		),
+		(
+			lambda: mesh.polygon(
+				SQUARE,
+				size=0.1,
+				holes=[mesh.disc(0.5, 0.5, 0.2)],
+				regions={"a": mesh.disc(0.5, 0.5, 0.2)},
+			),
+			r"region 'a'.* no triangle",
+		),
+		(
+			lambda: mesh.polygon(
+				ANGLED, size=0.01, regions={"a": [(0.1, 0.04), (0.04, 0.1), (0.04, 0.04)]}
+			),
+			r"region 'a' lies outside of the outline at \(0.07, 0.07\) m",
+		),
 		(lambda: mesh.box(1, 0, 0, 1), r"box\(1, 0, 0, 1\) m"),
 		(lambda: mesh.disc(0, 0, -1), r"radius is -1 m"),
 		(lambda: mesh.disc(0, 0, 1, 2), r"2 corners"),
@@ -353,7 +496,9 @@ def test_bad_input_is_refused_with_value_and_place(call, message):
 def test_a_field_finer_than_expected_stops_at_the_limit():
 	# The spot slips through the estimate's grid of points; refinement itself must notice.
 	spot = lambda x, y: 1e-5 if math.hypot(x - 0.5, y - 0.5) < 0.006 else 0.02
-	with pytest.raises(ValueError, match="more than 20000 triangles and is not finished; use a larger size, or raise limit="):
+	with pytest.raises(
+		ValueError, match="more than 20000 triangles and is not finished; use a larger size, or raise limit="
+	):
 		mesh.polygon(SQUARE, size=spot, limit=20000, regions={"a": mesh.box(0.5, 0.5, 0.7, 0.7)})
 
 

@@ -42,7 +42,9 @@ def test_picture_has_the_width_of_a_column(block, tmp_path):
 	assert height / 300 * 25.4 <= 110.2
 
 
-@pytest.mark.parametrize("count, shape", [(800, lambda m: m.centroids[:, 0]), (2400, lambda m: np.repeat(m.centroids[:, :1], 3, axis=1))])
+@pytest.mark.parametrize(
+	"count, shape", [(800, lambda m: m.centroids[:, 0]), (2400, lambda m: np.repeat(m.centroids[:, :1], 3, axis=1))]
+)
 def test_values_of_triangles_and_sub_elements(block, count, shape):
 	values = shape(block)
 	drawn = shapes(plots.field(block, values, "x [m]"))
@@ -84,9 +86,17 @@ def test_limits_mark_values_beyond_them(block):
 
 
 def test_wrong_shapes_are_refused(block):
-	with pytest.raises(ValueError, match=r"field 'damage': values of shape \(801,\) fit neither 431 nodes, nor 800 triangles, nor \(800, 3\)"):
+	with pytest.raises(
+		ValueError,
+		match=(
+			r"field 'damage': values of shape \(801,\) fit neither 431 nodes, nor 800 triangles, "
+			r"nor \(800, 3\)"
+		),
+	):
 		plots.field(block, np.zeros(801), "damage")
-	with pytest.raises(ValueError, match=r"field 'damage': displacement has shape \(800, 2\) instead of \(431, 2\)"):
+	with pytest.raises(
+		ValueError, match=r"field 'damage': displacement has shape \(800, 2\) instead of \(431, 2\)"
+	):
 		plots.field(block, np.zeros(800), "damage", displacement=np.zeros((800, 2)))
 
 

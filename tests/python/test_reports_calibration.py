@@ -24,7 +24,13 @@ def bonded(values, case):
 	"""Elasticities 1 and 0, 0.1 and 0.9; the second seed is 2 % stronger, and bonds above 300 MPa do not break."""
 	if values["cohesion"] > 300e6:
 		raise EvaluationError("the stress had not fallen")
-	return {"young": 1.3 * values["young"], "ucs": 58e6 * (values["young"] / 30e9)**0.1 * (values["cohesion"] / 42e6)**0.9 * (1 + 0.02 * (case["seed"] - 1))}
+	return {
+		"young": 1.3 * values["young"],
+		"ucs": 58e6
+		* (values["young"] / 30e9)**0.1
+		* (values["cohesion"] / 42e6)**0.9
+		* (1 + 0.02 * (case["seed"] - 1)),
+	}
 
 
 def calibrated(ucs=60e6, seeds=(1, ), folder=None, bounds=None, evaluate=bonded):
@@ -37,7 +43,8 @@ def calibrated(ucs=60e6, seeds=(1, ), folder=None, bounds=None, evaluate=bonded)
 	with Bench(evaluate, [{"seed": seed} for seed in seeds], {"specimen": "prism"}, path) as bench:
 		outcome = Calibration(tuned, targets, bench, tell=progress).run()
 	report = CalibrationReport(
-		outcome, bench, "rigid", folder or "", "A title", "O.materials.append(…)", [("specimen", "prism <small>", "a prism")], "run it --so", {"young": [40e9]},
+		outcome, bench, "rigid", folder or "", "A title", "O.materials.append(…)",
+		[("specimen", "prism <small>", "a prism")], "run it --so", {"young": [40e9]},
 		{"YADE": "1"}, ["A note."]
 	)
 	return report, "\n".join(lines).splitlines()
@@ -48,7 +55,13 @@ def test_progress_says_what_was_measured_and_how_far_it_is():
 	assert re.search(r"young \[GPa\]\s+cohesion \[MPa\]\s+E \[GPa\]\s+UCS \[MPa\]", lines[0])
 	assert re.search(r"40 ± 1 %\s+60 ± 2 %", lines[1])
 	ucs = 58e6 * (4 / 3)**0.1 * (100 / 42)**0.9
-	assert re.fullmatch(rf"\s+1\s+start\s+40\s+100\s+52\s+{ucs / 1e6:.4g}\s+E \+30.0 %, UCS {re.escape(percent(ucs / 60e6 - 1))}", lines[2])
+	assert re.fullmatch(
+		(
+			rf"\s+1\s+start\s+40\s+100\s+52\s+{ucs / 1e6:.4g}\s+E \+30.0 %, UCS "
+			rf"{re.escape(percent(ucs / 60e6 - 1))}"
+		),
+		lines[2],
+	)
 	assert sum("- met" in line for line in lines) >= 1
 	assert any("moves cohesion" in line for line in lines)
 
@@ -72,7 +85,10 @@ def test_table_and_verdict():
 
 def test_what_is_out_of_reach_is_said_with_the_nearest(tmp_path):
 	report, _ = calibrated(folder=tmp_path, bounds={"cohesion": (50e6, 120e6)}, ucs=200e6)
-	assert report.verdict().startswith("The targets are NOT met: the upper bound of cohesion, 1.2e+08, keeps it from going further. The nearest is shown")
+	assert report.verdict().startswith(
+		"The targets are NOT met: the upper bound of cohesion, 1.2e+08, keeps it from going further. "
+		"The nearest is shown"
+	)
 	assert report.parameter_rows()[1][-1] == "at its upper bound"
 	page = open(report.write(), encoding="utf-8").read()
 	assert "NOT met" in page and "the nearest, which does not meet the targets" in page
@@ -90,10 +106,17 @@ def test_files(tmp_path):
 	assert summary["reached"] is True
 	assert summary["parameters"]["young"]["value"] == pytest.approx(40e9 / 1.3, rel=0.01)
 	assert summary["elasticities"]["ucs"]["cohesion"] == pytest.approx(0.9, abs=1e-3)
-	assert summary["evaluations"]["made"] == report.bench.ran == len((tmp_path / "evaluations.jsonl").read_text().splitlines())
+	assert (
+		summary["evaluations"]["made"]
+		== report.bench.ran
+		== len((tmp_path / "evaluations.jsonl").read_text().splitlines())
+	)
 	assert len(summary["steps"]) == len(report.outcome.steps)
 	assert summary["settings"] == {"specimen": "prism"}
-	for text in ("A title", "run it --so", "A note.", "prism &lt;small&gt;", "O.materials.append(…)", "evaluations.jsonl", "moves cohesion"):
+	for text in (
+		"A title", "run it --so", "A note.", "prism &lt;small&gt;", "O.materials.append(…)",
+		"evaluations.jsonl", "moves cohesion"
+	):
 		assert text in page
 	assert page.count("data:image/png;base64,") == 2
 	for name in ("convergence", "sensitivities"):
@@ -124,7 +147,12 @@ def test_effects_of_the_point_found_are_on_the_page(tmp_path):
 def test_nothing_measured_is_a_report_too(tmp_path):
 	report, _ = calibrated(folder=tmp_path)
 	outcome = report.outcome
-	outcome.best, outcome.elasticities, outcome.reached, outcome.why = None, None, False, ["the first evaluation failed: no specimen"]
+	outcome.best, outcome.elasticities, outcome.reached, outcome.why = (
+		None,
+		None,
+		False,
+		["the first evaluation failed: no specimen"],
+	)
 	page = open(report.write(), encoding="utf-8").read()
 	assert "Nothing could be measured: the first evaluation failed: no specimen." in page
 	assert "data:image" not in page
@@ -141,21 +169,36 @@ def test_pictures_show_every_point():
 	assert list(filled[1].get_ydata()) == [100 * report.outcome.targets[1].miss(step.point) for step in search]
 	assert "[%]" in ax.get_ylabel() and ax.get_xlabel() == "point"
 	bars = sensitivities(report.outcome, "rigid").axes[0]
-	assert sorted(bar.get_height() for bar in bars.patches) == pytest.approx(sorted(report.outcome.elasticities.ravel()))
+	assert sorted(bar.get_height() for bar in bars.patches) == pytest.approx(
+		sorted(report.outcome.elasticities.ravel())
+	)
 
 
 def test_line_to_paste_is_the_material():
 	line = material_line("rigid", {"young": 30.3909e9, "poisson": 0.25, "cohesion": 42134400.0}, 2400)
-	assert line == "O.materials.append(BondedMat(label=\"rock\", young=30.3909e9, poisson=0.25, cohesion=42.1344e6, density=2400 / packing.solid_fraction))"
+	assert (
+		line
+		== (
+			"O.materials.append(BondedMat(label=\"rock\", young=30.3909e9, poisson=0.25, "
+			"cohesion=42.1344e6, density=2400 / packing.solid_fraction))"
+		)
+	)
 	made = []
-	code = material_line("deformable", {"strength": 94883012.3, "fractureEnergy": 80e3, "friction": 0.66, "damageExponent": 1234.5678}, 2400)
+	code = material_line(
+		"deformable",
+		{"strength": 94883012.3, "fractureEnergy": 80e3, "friction": 0.66, "damageExponent": 1234.5678},
+		2400,
+	)
 	exec(code, {"ConcreteDamageMat": lambda **values: values, "O": type("O", (), {"materials": made})})
 	assert made == [{
-		"label": "concrete", "strength": pytest.approx(94883012.3, rel=1e-5), "fractureEnergy": 80e3, "friction": 0.66, "damageExponent": 1234.57,
+		"label": "concrete", "strength": pytest.approx(94883012.3, rel=1e-5), "fractureEnergy": 80e3,
+		"friction": 0.66, "damageExponent": 1234.57,
 		"density": 2400
 	}]
 
 
-@pytest.mark.parametrize("part, text", [(0.0134, "+1.3 %"), (-0.024, "−2.4 %"), (-0.0001, "+0.0 %"), (12.3456, "+1235 %")])
+@pytest.mark.parametrize(
+	"part, text", [(0.0134, "+1.3 %"), (-0.024, "−2.4 %"), (-0.0001, "+0.0 %"), (12.3456, "+1235 %")]
+)
 def test_per_cent(part, text):
 	assert percent(part) == text

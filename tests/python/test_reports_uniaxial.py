@@ -14,17 +14,30 @@ from ddem.studies.runs import Run, cost_ratios
 from ddem.studies.snapshots import SphereSnapshot, TriangleSnapshot, crack_traces
 
 KEYS = {
-	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa", "strain_at_peak", "damage_at_peak", "damage_at_end",
+	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa",
+	"strain_at_peak", "damage_at_peak", "damage_at_end",
 	"energy_error"
 }
 
 
 def curve(energies):
 	"""Up to 60 MPa at 0.002 along 30 GPa, down to 6 MPa at 0.004; damage grows from 0 to 0.4."""
-	series = Series(time="s", strain="-", stress="Pa", force_top="N", force_bottom="N", damage="-", energy_drift="J", **{f"energy_{name}": "J" for name in energies})
+	series = Series(
+		time="s",
+		strain="-",
+		stress="Pa",
+		force_top="N",
+		force_bottom="N",
+		damage="-",
+		energy_drift="J",
+		**{f"energy_{name}": "J" for name in energies},
+	)
 	for strain in np.linspace(0, 0.004, 201):
 		stress = 30e9 * strain if strain <= 0.002 else 60e6 - 27e9 * (strain - 0.002)
-		row = dict(time=0.1 * strain, strain=strain, stress=stress, force_top=2e-3 * stress, force_bottom=2e-3 * stress, damage=100 * strain, energy_drift=1e-5 * strain)
+		row = dict(
+			time=0.1 * strain, strain=strain, stress=stress, force_top=2e-3 * stress,
+			force_bottom=2e-3 * stress, damage=100 * strain, energy_drift=1e-5 * strain
+		)
 		series.append(**row, **{f"energy_{name}": factor * strain for name, factor in energies.items()})
 	return series
 
@@ -33,24 +46,39 @@ def deformable_run():
 	sample = mesh.rectangle(0.1, 0.2, 0.02, regions={"steel": mesh.box(0.04, 0.08, 0.06, 0.12)})
 	inner = np.zeros((0, 2), dtype=int)
 	snapshots = [
-		TriangleSnapshot(time, sample.nodes, sample.triangles, np.full((len(sample.triangles), 3), 1e3 * time), np.linspace(-time, time, len(sample.triangles)), inner)
+		TriangleSnapshot(
+			time, sample.nodes, sample.triangles, np.full((len(sample.triangles), 3), 1e3 * time),
+			np.linspace(-time, time, len(sample.triangles)), inner
+		)
 		for time in np.linspace(0, 4e-4, 9)
 	]
 	return Run(
-		"deformable", "deformable triangles", "triangle", len(sample.triangles), 711, 2e-7, 2.5e-7, 2000, 4.0, 3.9, 1,
-		curve({"externalWork": -1000, "elastPotential": 300, "plasticFlow": 700}), snapshots, [("deformable", 3.5, 2000), ("recorder", 0.5, 200)],
+		"deformable", "deformable triangles", "triangle", len(sample.triangles), 711, 2e-7, 2.5e-7, 2000, 4.0,
+		3.9, 1,
+		curve({"externalWork": -1000, "elastPotential": 300, "plasticFlow": 700}), snapshots,
+		[("deformable", 3.5, 2000), ("recorder", 0.5, 200)],
 		3e-5, "largest strain reached", parameters=[("B", "30 GPa", "bulk modulus <of> concrete")]
 	)
 
 
 def rigid_run():
-	grid = np.stack(np.meshgrid(np.linspace(0.005, 0.095, 10), np.linspace(0.005, 0.195, 20), [0.0]), axis=-1).reshape(-1, 3)
+	grid = np.stack(
+		np.meshgrid(np.linspace(0.005, 0.095, 10), np.linspace(0.005, 0.195, 20), [0.0]), axis=-1
+	).reshape(-1, 3)
 	spheres = packing.Packing(grid, np.full(len(grid), 0.005))
 	cracks = crack_traces(grid[:5], grid[1:6], np.full(5, 0.005))
-	snapshots = [SphereSnapshot(time, grid, spheres.radii, np.full(len(grid), 1e3 * time), grid[:, 0] - 0.05, cracks, np.ones(5, bool)) for time in (0, 2e-4, 4e-4)]
+	snapshots = [
+		SphereSnapshot(
+			time, grid, spheres.radii, np.full(len(grid), 1e3 * time), grid[:, 0] - 0.05, cracks,
+			np.ones(5, bool)
+		)
+		for time in (0, 2e-4, 4e-4)
+	]
 	return Run(
-		"rigid", "rigid bonded spheres", "sphere", len(grid), 6 * len(grid), 4e-7, 5e-7, 1000, 1.0, 0.9, 1, curve({"externalWork": -1000, "bondElastic": 400, "friction": 600}),
-		snapshots, [("interactions", 0.7, 1000), ("newton", 0.3, 1000)], 3e-5, "stress stayed below 20 % of the peak", extra={"bonds": 361}
+		"rigid", "rigid bonded spheres", "sphere", len(grid), 6 * len(grid), 4e-7, 5e-7, 1000, 1.0, 0.9, 1,
+		curve({"externalWork": -1000, "bondElastic": 400, "friction": 600}),
+		snapshots, [("interactions", 0.7, 1000), ("newton", 0.3, 1000)], 3e-5,
+		"stress stayed below 20 % of the peak", extra={"bonds": 361}
 	)
 
 
@@ -62,12 +90,18 @@ def runs():
 def broken(count):
 	"""So many broken bonds, every third in shear, evenly over the 0.4 ms of the test."""
 	records = np.zeros(count, broken_bonds.DTYPE)
-	records["time"], records["mode"] = np.linspace(0, 4e-4, count), np.where(np.arange(count) % 3, "tension", "shear")
+	records["time"], records["mode"] = (
+		np.linspace(0, 4e-4, count),
+		np.where(np.arange(count) % 3, "tension", "shear"),
+	)
 	return records
 
 
 def report(runs, folder, **options):
-	return Report(runs, folder, "A title", [("width", "0.1 m", "of the block")], "run it --so", {"preset": "none", "seed": 7, "vtk": True}, {"YADE": "1"}, ["A note."], **options)
+	return Report(
+		runs, folder, "A title", [("width", "0.1 m", "of the block")], "run it --so",
+		{"preset": "none", "seed": 7, "vtk": True}, {"YADE": "1"}, ["A note."], **options
+	)
 
 
 def test_summary_has_the_promised_figures(runs):
@@ -90,7 +124,8 @@ def test_cost_ratios(runs):
 	ratios = cost_ratios(runs)
 	assert ratios["wall_s"] == pytest.approx(4)
 	assert ratios["steps"] == pytest.approx(2)
-	assert ratios["ns_per_particle_step"] == pytest.approx(3.5 / 2 * rigid.particles / deformable.particles)  # without the recorder's half second
+	# without the recorder's half second
+	assert ratios["ns_per_particle_step"] == pytest.approx(3.5 / 2 * rigid.particles / deformable.particles)
 	assert cost_ratios(runs[:1]) == {}
 
 
@@ -112,7 +147,10 @@ def test_files_and_page(runs, tmp_path):
 	assert summary["options"]["seed"] == 7
 	assert summary["cost_ratio_deformable_to_rigid"]["wall_s"] == pytest.approx(4)
 	assert Series.read(folder / "rigid.csv")["stress"].max() == pytest.approx(60e6)
-	for text in ("A title", "run it --so", "A note.", "bulk modulus &lt;of&gt; concrete", "seed 7", "60.0", "rigid bonded spheres", "deformable triangles"):
+	for text in (
+		"A title", "run it --so", "A note.", "bulk modulus &lt;of&gt; concrete", "seed 7", "60.0",
+		"rigid bonded spheres", "deformable triangles"
+	):
 		assert text in page
 	pictures = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
 	assert len(pictures) == 8 == page.count("data:image/png;base64,")

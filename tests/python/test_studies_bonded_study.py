@@ -19,20 +19,28 @@ BONDS = 200
 
 
 def folder(path, strength, top=1.0):
-	"""What scripts/ucs_bonded.py leaves: stress up to *strength* [MPa] at 0.2 ms, then down to half of it at 0.25 ms; the top wall feels *top* times the force of
-	the bottom wall; 20 of 200 bonds have broken by the peak, 80 by the end."""
+	"""What scripts/ucs_bonded.py leaves: stress up to *strength* [MPa] at 0.2 ms, then down to half of it at
+	0.25 ms; the top wall feels *top* times the force of the bottom wall; 20 of 200 bonds have broken by the peak,
+	80 by the end."""
 	os.makedirs(path)
 	series = Series(time="s", strain="-", stress="Pa", force_top="N", force_bottom="N", damage="-")
 	for time in np.linspace(END / 500, END, 500):
 		stress = 1e6 * strength * (time / 2e-4 if time <= 2e-4 else 1 - (time - 2e-4) / 1e-4)
 		bottom = 2 * AREA * stress / (1 + top)
-		series.append(time=time, strain=0.01 * time / 2e-4, stress=stress, force_top=top * bottom, force_bottom=bottom, damage=0.0)
+		series.append(
+			time=time, strain=0.01 * time / 2e-4, stress=stress, force_top=top * bottom,
+			force_bottom=bottom, damage=0.0
+		)
 	series.write(path / "rigid.csv")
 	broken = np.zeros(80, broken_bonds.DTYPE)
-	broken["mode"], broken["time"] = "tension", np.concatenate([np.linspace(1e-4, 1.9e-4, 20), np.linspace(2.01e-4, 2.4e-4, 60)])
+	broken["mode"], broken["time"] = (
+		"tension",
+		np.concatenate([np.linspace(1e-4, 1.9e-4, 20), np.linspace(2.01e-4, 2.4e-4, 60)]),
+	)
 	broken_bonds.write(broken, path / "rigid_broken_bonds.csv")
 	figures = {
-		"particles": 50, "bonds": BONDS, "ucs_MPa": strength, "young_GPa": strength / 1.5, "strain_at_peak": 0.01, "damage_at_peak": 0.1, "damage_at_end": 0.4,
+		"particles": 50, "bonds": BONDS, "ucs_MPa": strength, "young_GPa": strength / 1.5,
+		"strain_at_peak": 0.01, "damage_at_peak": 0.1, "damage_at_end": 0.4,
 		"dt_s": 5e-7, "steps": 500, "cpu_s": 3.0, "wave_speed_m_s": 800.0
 	}
 	with open(path / "summary.json", "w") as file:
@@ -46,7 +54,14 @@ def group(tmp_path):
 
 	def make(strengths, radii=(0.4e-3, 2e-3), stiffness=100e9, kind="paper", top=1.0):
 		name = f"{kind}-{radii[0]:g}-{stiffness:g}".replace(" ", "_")
-		return Group(name, name, radii, stiffness, kind, [folder(tmp_path / f"{name}-{row}", strength, top) for row, strength in enumerate(strengths)])
+		return Group(
+			name,
+			name,
+			radii,
+			stiffness,
+			kind,
+			[folder(tmp_path / f"{name}-{row}", strength, top) for row, strength in enumerate(strengths)],
+		)
 
 	return make
 
@@ -61,7 +76,11 @@ def test_figures_of_a_run(group):
 
 def test_spread_over_packings(group):
 	some = group([100.0, 130.0, 190.0])
-	assert (some.spread("ucs_MPa").median, some.spread("ucs_MPa").low, some.spread("ucs_MPa").high) == (130, 100, 190)
+	assert (some.spread("ucs_MPa").median, some.spread("ucs_MPa").low, some.spread("ucs_MPa").high) == (
+		130,
+		100,
+		190,
+	)
 	assert some.spread("ucs_MPa").text("{:.0f}") == "130 (100–190)"
 	assert Spread.of([-1.0, 2.0]).text("{:+.0f}") == "+0 (−1 to +2)"
 	assert Spread.of([7.0]).text("{:.1f}") == "7.0"
@@ -84,13 +103,17 @@ def test_curves_file(group, tmp_path):
 
 def test_claims_stand_beside_what_was_measured(group):
 	groups = [
-		group([200.0, 240.0, 260.0], top=1.25), group([100.0, 110.0, 120.0], radii=(0.8e-3, 4e-3)), group([220.0, 264.0, 286.0], stiffness=102e9, top=1.25),
+		group([200.0, 240.0, 260.0], top=1.25), group([100.0, 110.0, 120.0], radii=(0.8e-3, 4e-3)),
+		group([220.0, 264.0, 286.0], stiffness=102e9, top=1.25),
 		group([100.0, 110.0, 120.0], radii=(0.8e-3, 4e-3), stiffness=102e9)
 	]
 	found = {claim.about: claim for claim in claims(groups)}
 	assert found["strength (UCS)"].paper == "180–300 MPa"
 	assert found["strength (UCS)"].here == "160 (100–286) MPa"
-	assert found["strength (UCS)"].remark == "by eq. 9, partly inside; divided by A 320 (200–572) MPa, partly inside"
+	assert (
+		found["strength (UCS)"].remark
+		== "by eq. 9, partly inside; divided by A 320 (200–572) MPa, partly inside"
+	)
 	assert found["Young's modulus"].here == "107 (67–191) GPa"
 	assert found["bonds broken at the peak"].here == "10 %" and found["bonds broken after the peak"].here == "40 %"
 	assert found["largest force on the bottom wall"].here == "20000"  # 0.2 ms in records of 10 ns
@@ -99,7 +122,10 @@ def test_claims_stand_beside_what_was_measured(group):
 	assert found["wave speed over that of a wall"].here == "6400"
 
 
-@pytest.mark.parametrize("values, place", [([200, 280], "inside"), ([100, 170], "below"), ([310, 320], "above"), ([170, 190], "partly inside")])
+@pytest.mark.parametrize(
+	"values, place",
+	[([200, 280], "inside"), ([100, 170], "below"), ([310, 320], "above"), ([170, 190], "partly inside")],
+)
 def test_place_in_the_claimed_range(values, place):
 	assert bonded_study.place(Spread.of(values), bonded_study.UCS_CLAIMED) == place
 
@@ -112,17 +138,22 @@ def test_change_is_taken_packing_by_packing(group):
 
 def test_page_and_files(group, tmp_path):
 	groups = [
-		group([200.0, 240.0, 260.0]), group([210.0, 240.0, 260.0], stiffness=102e9), group([160.0, 192.0, 208.0], kind="rock density"),
+		group([200.0, 240.0, 260.0]), group([210.0, 240.0, 260.0], stiffness=102e9),
+		group([160.0, 192.0, 208.0], kind="rock density"),
 		group([180.0, 216.0, 234.0], kind="consistent bonds"), group([148.85], kind="sample of ESyS-Particle"),
 		group([125.0], kind="sample of ESyS-Particle, rock density")
 	]
 	out = tmp_path / "out"
-	path = report.write(groups, str(out), "run it", {"quick": False}, {"YADE": "1"}, [("walls", "0.125 m/s", "speed")])
+	path = report.write(
+		groups, str(out), "run it", {"quick": False}, {"YADE": "1"}, [("walls", "0.125 m/s", "speed")]
+	)
 	page = open(path, encoding="utf-8").read().replace("\u00a0", " ")
 	assert page.count("data:image/png;base64,") == 5
-	assert not re.search(r"""(src|href)\s*=\s*["'](?!data:)|url\(|@import|<script|<link""", page)  # nothing is loaded from elsewhere
+	# nothing is loaded from elsewhere
+	assert not re.search(r"""(src|href)\s*=\s*["'](?!data:)|url\(|@import|<script|<link""", page)
 	for text in (
-		"240 (200–260) MPa for 0.4–2.0 mm", "the strength changes by −20.0 %", "in ESyS-Particle itself by −16 %", "the bonds here give 148.8 MPa", "run it", "likely twice"
+		"240 (200–260) MPa for 0.4–2.0 mm", "the strength changes by −20.0 %",
+		"in ESyS-Particle itself by −16 %", "the bonds here give 148.8 MPa", "run it", "likely twice"
 	):
 		assert text in page, text
 	for name in ("broken_bonds", "force_bottom", "force_top", "stress_strain", "influences"):
@@ -136,7 +167,10 @@ def test_page_and_files(group, tmp_path):
 	assert {claim["about"] for claim in study["claims"]} == {claim.about for claim in claims(groups)}
 	with open(out / "runs.csv", newline="") as file:
 		rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-	assert study["readings"] == [[groups[0].label, "inside", "inside", "above", "above"], [groups[4].label, "below", "below", "inside", "above"]]
+	assert study["readings"] == [
+		[groups[0].label, "inside", "inside", "above", "above"],
+		[groups[4].label, "below", "below", "inside", "above"],
+	]
 	assert len(rows) == 14 and float(rows[1]["ucs_MPa [MPa]"]) == 240
 	assert len([name for name in os.listdir(out) if name.startswith("curves_")]) == len(groups)
 	lines = report.table(groups).splitlines()
@@ -160,5 +194,8 @@ def test_effects_of_the_first_run_are_on_the_page(group, tmp_path):
 
 
 def test_page_of_a_few_runs_without_pictures(group, tmp_path):
-	page = open(report.write([group([200.0])], str(tmp_path / "out"), "run it", {}, {}, [], pictures=False), encoding="utf-8").read()
+	page = open(
+		report.write([group([200.0])], str(tmp_path / "out"), "run it", {}, {}, [], pictures=False),
+		encoding="utf-8",
+	).read()
 	assert "data:image" not in page and "Figure 1" not in page and "What else decides" not in page

@@ -1,6 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""ESyS-Particle as a peer: what it is given, how it is run, what is read back, how two records are compared. None of these tests needs that program; the live
-comparison is in tests/yade/test_compare_esys.py."""
+"""ESyS-Particle as a peer: what it is given, how it is run, what is read back, how two records are compared. None of
+these tests needs that program; the live comparison is in tests/yade/test_compare_esys.py."""
 import json
 import math
 import os
@@ -15,8 +15,12 @@ from ddem.studies.esys import comparison, compression
 
 @pytest.fixture
 def setup():
-	"""Three touching spheres in a row, in a box of 10 mm x 20 mm x 10 mm; the other values are those of ESyS-Particle's tutorial."""
-	packing = Packing([[5e-3, 4e-3, 0], [5e-3, 7e-3, 0], [5e-3, 9.5e-3, 0]], [2e-3, 1e-3, 1.5e-3], (0, 0, -5e-3), (10e-3, 20e-3, 5e-3), bonds=[[0, 1], [1, 2]])
+	"""Three touching spheres in a row, in a box of 10 mm x 20 mm x 10 mm;
+	the other values are those of ESyS-Particle's tutorial."""
+	packing = Packing(
+		[[5e-3, 4e-3, 0], [5e-3, 7e-3, 0], [5e-3, 9.5e-3, 0]], [2e-3, 1e-3, 1.5e-3], (0, 0, -5e-3),
+		(10e-3, 20e-3, 5e-3), bonds=[[0, 1], [1, 2]]
+	)
 	return esys.Setup(packing, dt=1e-8, steps=20, every=5, ramp_steps=5000)
 
 
@@ -27,11 +31,17 @@ def test_parameters_are_those_of_the_tutorial_in_its_units(setup):
 	given = esys.parameters(setup, workers=2)
 	# rot_compress.py of the tutorial; mm, N, ms, so MPa and g/mm³
 	tutorial = {
-		"walls": [0, 20], "dt": 1e-5, "speed": 0.125, "wall_stiffness": 1e5, "young": 1e5, "poisson": 0.25, "cohesion": 100, "bond_friction": 1,
-		"friction_static": 0.6, "friction_dynamic": 0.4, "viscosity": 0.002, "density": 1, "grid_spacing": 5, "verlet_distance": 0.08
+		"walls": [0, 20], "dt": 1e-5, "speed": 0.125, "wall_stiffness": 1e5, "young": 1e5, "poisson": 0.25,
+		"cohesion": 100, "bond_friction": 1,
+		"friction_static": 0.6, "friction_dynamic": 0.4, "viscosity": 0.002, "density": 1, "grid_spacing": 5,
+		"verlet_distance": 0.08
 	}
-	assert {name: given[name] for name in tutorial} == {name: pytest.approx(value, rel=1e-12) for name, value in tutorial.items()}
-	assert (given["steps"], given["every"], given["ramp_steps"], given["workers"], given["mass_law"]) == (20, 5, 5000, 2, "cube")
+	assert {name: given[name] for name in tutorial} == {
+		name: pytest.approx(value, rel=1e-12) for name, value in tutorial.items()
+	}
+	assert (given["steps"], given["every"], given["ramp_steps"], given["workers"], given["mass_law"]) == (
+		20, 5, 5000, 2, "cube"
+	)
 
 
 def test_domain_has_room_around_the_sample_and_is_halved_in_its_middle(setup):
@@ -47,12 +57,15 @@ def test_files_are_read_as_they_were_written(setup, tmp_path):
 	assert compression.rows(tmp_path / "bonds.csv", "ij", (int, int)) == [(0, 1), (1, 2)]
 	spheres = compression.rows(tmp_path / "particles.csv", "id x y z r".split(), (int, float, float, float, float))
 	assert [sphere[0] for sphere in spheres] == [0, 1, 2]
-	np.testing.assert_allclose([sphere[1:] for sphere in spheres], [[5, 4, 0, 2], [5, 7, 0, 1], [5, 9.5, 0, 1.5]], rtol=1e-15)
+	np.testing.assert_allclose(
+		[sphere[1:] for sphere in spheres], [[5, 4, 0, 2], [5, 7, 0, 1], [5, 9.5, 0, 1.5]], rtol=1e-15
+	)
 	assert json.loads((tmp_path / "parameters.json").read_text()) == esys.parameters(setup)
 
 
 def test_walls_move_as_in_a_recorded_run():
-	# Bottom wall [mm] after 5, 10, 15 and 25000 steps of a run with ESyS-Particle's own WallLoader: 0.125 m/s, 1e-5 ms, ramp of 5000 steps.
+	# Bottom wall [mm] after 5, 10, 15 and 25000 steps of a run with ESyS-Particle's own WallLoader:
+	# 0.125 m/s, 1e-5 ms, ramp of 5000 steps.
 	places = np.cumsum([compression.ramped_step(step, 0.125, 1e-5, 5000) for step in range(1, 25001)])
 	np.testing.assert_allclose(places[[4, 9, 14, 24999]], [2.5e-9, 1.125e-8, 2.625e-8, 0.028124375], rtol=1e-9)
 	assert compression.ramped_step(1, 0.125, 1e-5, 0) == 0.125 * 1e-5
@@ -64,8 +77,12 @@ def test_mass_laws():
 
 
 @pytest.mark.parametrize(
-	"change, message", [({"steps": 21}, "steps = 21 must be a multiple of every = 5"), ({"mass_law": "hollow"}, "mass_law = 'hollow' must be cube or solid"),
-	({"dt": 0.0}, r"dt = 0.0 s")]
+	"change, message",
+	[
+		({"steps": 21}, "steps = 21 must be a multiple of every = 5"),
+		({"mass_law": "hollow"}, "mass_law = 'hollow' must be cube or solid"),
+		({"dt": 0.0}, r"dt = 0.0 s"),
+	],
 )
 def test_wrong_setups_are_refused(setup, change, message):
 	with pytest.raises(ValueError, match=message):
@@ -86,7 +103,8 @@ BONDS = [2, 2, 2, 1, 1]
 def leave_output(folder):
 	rows = range(5)
 	(folder / "position.dat").write_text("".join(f"0 {0.1 * k} 0  0 {20 - 0.1 * k} 0  \n" for k in rows))
-	(folder / "force.dat").write_text("".join(f"0.5 {FORCES[k]} 0  0 {-FORCES[k] - 1} 0.5  \n" for k in rows))  # the top wall pushes down, by 1 N more
+	# the top wall pushes down, by 1 N more
+	(folder / "force.dat").write_text("".join(f"0.5 {FORCES[k]} 0  0 {-FORCES[k] - 1} 0.5  \n" for k in rows))
 	(folder / "bonds.dat").write_text("".join(f"{count:.10e}\n" for count in BONDS))
 	(folder / "finished.json").write_text('{"pieces": [1.2e-5, 1.5e-5, 1.5e-5, 1.5e-5]}')
 
@@ -179,13 +197,17 @@ def record_of(setup, program, stress, broken, seconds=1.0, interval=5e-8):
 	"""A record with a strain that grows by 1e-4 a row; stress in MPa."""
 	record = esys.Record(program, setup, pieces=[0.25 * seconds, 0.75 * seconds])
 	for row, (value, count) in enumerate(zip(stress, broken)):
-		record.series.append(time=row * interval, strain=1e-4 * row, stress=1e6 * value, force_top=100 * value, force_bottom=100 * value, broken=count)
+		record.series.append(
+			time=row * interval, strain=1e-4 * row, stress=1e6 * value, force_top=100 * value,
+			force_bottom=100 * value, broken=count
+		)
 	return record
 
 
 @pytest.fixture
 def pair(setup):
-	"""Two tests of 100 MPa/1 % stiffness, peak at 1 MPa; the second differs by 1e-4 MPa at 50 %, by 0.01 MPa at 80 %, and in its peak by 0.1 MPa."""
+	"""Two tests of 100 MPa/1 % stiffness, peak at 1 MPa; the second differs by 1e-4 MPa at 50 %, by 0.01 MPa at
+	80 %, and in its peak by 0.1 MPa."""
 	stress = np.concatenate([np.linspace(0, 1, 11), [0.5, 0.3]])
 	other = stress.copy()
 	other[[5, 8, 10]] += [1e-4, 0.01, 0.1]
@@ -206,7 +228,11 @@ def test_figures(pair):
 	assert figures["ucs_MPa"] == pytest.approx(1.0)
 	assert figures["young_GPa"] == pytest.approx(1.0)
 	assert figures["strain_at_peak_percent"] == pytest.approx(0.1)
-	assert (figures["broken_at_peak_percent"], figures["broken_at_end_percent"], figures["peak_passed"]) == (50, 50, True)
+	assert (figures["broken_at_peak_percent"], figures["broken_at_end_percent"], figures["peak_passed"]) == (
+		50,
+		50,
+		True,
+	)
 	assert figures["ns_per_particle_step"] == pytest.approx(2e9 / 19 / 3)
 	assert figures["ns_per_bond_step"] == pytest.approx(2e9 / 19 / 2)
 
@@ -221,7 +247,10 @@ def test_differences(pair):
 def test_records_of_other_times_are_refused(setup):
 	stress, broken = [0, 1, 2, 3], [0, 0, 0, 0]
 	with pytest.raises(ValueError, match="not taken at the same times"):
-		comparison.differences(record_of(setup, "first", stress, broken), record_of(setup, "second", stress, broken, interval=6e-8))
+		comparison.differences(
+			record_of(setup, "first", stress, broken),
+			record_of(setup, "second", stress, broken, interval=6e-8),
+		)
 
 
 def test_table_says_what_differs_and_who_is_faster(pair):
@@ -237,4 +266,7 @@ def test_picture_shows_both(pair, tmp_path):
 	above, middle, below = figure.axes
 	assert [line.get_label() for line in above.lines] == ["first", "second"]
 	np.testing.assert_allclose(above.lines[1].get_ydata()[10], 1.1)
-	assert all(unit in axes.get_ylabel() for axes, unit in zip(figure.axes, ("[MPa]", "[%]", "[MPa]"))) and "[%]" in below.get_xlabel()
+	assert (
+		all(unit in axes.get_ylabel() for axes, unit in zip(figure.axes, ("[MPa]", "[%]", "[MPa]")))
+		and "[%]" in below.get_xlabel()
+	)

@@ -42,7 +42,10 @@ def test_mean_and_scatter_over_cases():
 
 
 def test_tests_of_different_kinds_complete_each_other():
-	with Bench(lambda _, case: {"push": {"a": 1.0}, "pull": {"b": 2.0}}[case["test"]], [{"test": "push"}, {"test": "pull"}]) as bench:
+	with Bench(
+		lambda _, case: {"push": {"a": 1.0}, "pull": {"b": 2.0}}[case["test"]],
+		[{"test": "push"}, {"test": "pull"}],
+	) as bench:
 		assert bench.measure(points(1))[0].measured == {"a": 1.0, "b": 2.0}
 
 
@@ -57,7 +60,12 @@ def test_repeated_start_evaluates_nothing_again(tmp_path):
 
 
 @pytest.mark.parametrize(
-	"settings, case", [({"specimen": "block"}, {"seed": 1}), ({"specimen": "prism", "speed": 1}, {"seed": 1}), ({"specimen": "prism"}, {"seed": 2})]
+	"settings, case",
+	[
+		({"specimen": "block"}, {"seed": 1}),
+		({"specimen": "prism", "speed": 1}, {"seed": 1}),
+		({"specimen": "prism"}, {"seed": 2}),
+	]
 )
 def test_other_settings_are_not_reused(tmp_path, settings, case):
 	with Bench(Counted(), [{"seed": 1}], {"specimen": "prism"}, tmp_path / "e") as bench:
@@ -70,7 +78,9 @@ def test_other_settings_are_not_reused(tmp_path, settings, case):
 
 
 def test_order_of_settings_does_not_matter():
-	assert fingerprint({"a": 1, "b": 2}, {"x": 1.0, "y": 2.0}, {}) == fingerprint({"b": 2, "a": 1}, {"y": 2.0, "x": 1.0}, {})
+	assert fingerprint({"a": 1, "b": 2}, {"x": 1.0, "y": 2.0}, {}) == fingerprint(
+		{"b": 2, "a": 1}, {"y": 2.0, "x": 1.0}, {}
+	)
 	assert fingerprint({"a": 1}, {"x": 1.0}, {}) != fingerprint({"a": 1}, {"x": 1.0 + 1e-15}, {})
 
 
@@ -78,7 +88,12 @@ def test_a_line_says_everything(tmp_path):
 	with Bench(Counted(fails_at=[2.0]), [{"seed": 7}], {"specimen": "prism"}, tmp_path / "e") as bench:
 		bench.measure(points(1, 2))
 	good, bad = sorted(lines(tmp_path / "e"), key=lambda record: record["parameters"]["x"])
-	assert (good["settings"], good["case"], good["measured"], good["error"]) == ({"specimen": "prism"}, {"seed": 7}, {"y": 9.0}, None)
+	assert (good["settings"], good["case"], good["measured"], good["error"]) == (
+		{"specimen": "prism"},
+		{"seed": 7},
+		{"y": 9.0},
+		None,
+	)
 	assert good["seconds"] >= 0 and "T" in good["finished"]
 	assert (bad["parameters"], bad["measured"], bad["error"]) == ({"x": 2.0}, None, "nothing works at 2.0")
 
@@ -94,7 +109,15 @@ def test_what_a_scene_simulated_is_kept_beside_what_was_measured(tmp_path):
 
 
 @pytest.mark.parametrize(
-	"damage", [b"not json\n", b"[1, 2]\n", b"{}\n", b'{"format": 0}\n', b"\xff\xfe\n", b'{"format": 1, "error": null, "measured": {"y": NaN}, "key": "k"}\n']
+	"damage",
+	[
+		b"not json\n",
+		b"[1, 2]\n",
+		b"{}\n",
+		b'{"format": 0}\n',
+		b"\xff\xfe\n",
+		b'{"format": 1, "error": null, "measured": {"y": NaN}, "key": "k"}\n',
+	]
 )
 def test_damaged_line_costs_only_its_own_evaluation(tmp_path, damage):
 	path = tmp_path / "e"
@@ -138,7 +161,10 @@ def test_failed_evaluation_is_an_error_of_its_point_only(tmp_path):
 		assert bench.measure(points(2))[0].measured == {"y": 5.0}
 
 
-@pytest.mark.parametrize("answer, text", [({"y": float("nan")}, "measured y = nan"), ({"y": None}, "TypeError"), (None, "AttributeError")])
+@pytest.mark.parametrize(
+	"answer, text",
+	[({"y": float("nan")}, "measured y = nan"), ({"y": None}, "TypeError"), (None, "AttributeError")],
+)
 def test_answer_that_is_no_measure_is_an_error(answer, text):
 	with Bench(lambda *_: answer) as bench:
 		assert text in bench.measure(points(1))[0].error
@@ -155,7 +181,11 @@ def test_evaluations_run_at_the_same_time_and_give_the_same():
 		parallel = bench.measure(points(3, 1, 2))
 	with Bench(lambda values, _: {"y": values["x"]**2}) as bench:
 		serial = bench.measure(points(3, 1, 2))
-	assert [point.measured for point in parallel] == [point.measured for point in serial] == [{"y": 9.0}, {"y": 1.0}, {"y": 4.0}]
+	assert (
+		[point.measured for point in parallel]
+		== [point.measured for point in serial]
+		== [{"y": 9.0}, {"y": 1.0}, {"y": 4.0}]
+	)
 	assert [point.error for point in parallel] == [None] * 3
 
 
@@ -208,7 +238,10 @@ def test_second_process_is_refused(tmp_path):
 	Store(tmp_path / "e").close()
 
 
-@pytest.mark.parametrize("options, message", [({"cases": []}, "at least one case"), ({"jobs": 0}, "jobs = 0"), ({"jobs": 1.5}, "jobs = 1.5")])
+@pytest.mark.parametrize(
+	"options, message",
+	[({"cases": []}, "at least one case"), ({"jobs": 0}, "jobs = 0"), ({"jobs": 1.5}, "jobs = 1.5")],
+)
 def test_bad_input(options, message):
 	with pytest.raises(ValueError, match=message):
 		Bench(Counted(), **options)

@@ -14,7 +14,9 @@ YOUNG, PEAK = 40e9, 0.002
 def brittle(rows=401, young=YOUNG, peak=PEAK, rest=0.1):
 	"""Straight up to the peak, straight down to *rest* of it at twice the strain, constant after that."""
 	strain = np.linspace(0, 4 * peak, rows)
-	return strain, np.where(strain <= peak, young * strain, np.maximum(rest, 1 - (1 - rest) * (strain / peak - 1)) * young * peak)
+	return strain, np.where(
+		strain <= peak, young * strain, np.maximum(rest, 1 - (1 - rest) * (strain / peak - 1)) * young * peak
+	)
 
 
 def test_brittle_curve():
@@ -38,7 +40,8 @@ def test_slope_is_taken_between_a_fifth_and_three_fifths_only():
 
 
 def test_parabola_has_the_slope_of_its_secant():
-	# The least-squares slope of a parabola over an interval is that of the chord: for s = 2x - x², from s = 0.2 to 0.6, 2 - (x1 + x2).
+	# The least-squares slope of a parabola over an interval is that of the chord:
+	# for s = 2x - x², from s = 0.2 to 0.6, 2 - (x1 + x2).
 	x = np.linspace(0, 2, 20001)
 	first, last = (1 - math.sqrt(1 - s) for s in (0.2, 0.6))
 	assert measures.strength(x, 2 * x - x**2).young == pytest.approx(2 - first - last, rel=1e-3)

@@ -4,9 +4,12 @@ import sys
 
 import numpy as np
 
-from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, ForceResetter, O, Vector3i, ddem
+from yade import (
+	Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, ForceResetter, O, Vector3i, ddem
+)
 
-TABLE_1 = {"bulk": 30e9, "shear": 26e9, "density": 2400}  # concrete without its equation of state: Zubelewicz (2018), Table 1
+# concrete without its equation of state: Zubelewicz (2018), Table 1
+TABLE_1 = {"bulk": 30e9, "shear": 26e9, "density": 2400}
 TREATMENTS = ("none", "corotational", "cosserat")
 
 
@@ -22,7 +25,8 @@ def lame(material):
 
 
 def skewed_mesh(width=0.05, height=0.04, size=0.011):
-	"""An irregular mesh, sheared and stretched so that no triangle is equilateral and no edge is parallel to an axis."""
+	"""An irregular mesh, sheared and stretched so that no triangle is equilateral and no edge
+	is parallel to an axis."""
 	plain = ddem.mesh.rectangle(width, height, size=size, pattern="unstructured", seed=3)
 	skew = np.array([[1.0, 0.3], [0.15, 0.8]])
 	return ddem.mesh.Mesh(plain.nodes @ skew.T - (0.02, 0.01), plain.triangles)
@@ -30,17 +34,23 @@ def skewed_mesh(width=0.05, height=0.04, size=0.011):
 
 def equilateral_mesh(columns=4, rows=4, edge=0.01):
 	"""Rows of equilateral triangles, the one shape whose core is not turned by a homogeneous strain."""
-	nodes = np.array([(edge * (i + 0.5 * j), edge * np.sqrt(0.75) * j) for j in range(rows + 1) for i in range(columns + 1)])
+	nodes = np.array(
+		[(edge * (i + 0.5 * j), edge * np.sqrt(0.75) * j) for j in range(rows + 1) for i in range(columns + 1)]
+	)
 	at = lambda i, j: j * (columns + 1) + i
 	triangles = []
 	for j in range(rows):
 		for i in range(columns):
-			triangles += [(at(i, j), at(i + 1, j), at(i, j + 1)), (at(i + 1, j), at(i + 1, j + 1), at(i, j + 1))]
+			triangles += [
+				(at(i, j), at(i + 1, j), at(i, j + 1)),
+				(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)),
+			]
 	return ddem.mesh.Mesh(nodes, np.array(triangles))
 
 
 def start(*engines, step=0.8, **settings):
-	"""Set O.engines (the others before the DeformableEngine) and a time step of `step` times the critical one; returns the DeformableEngine."""
+	"""Set O.engines (the others before the DeformableEngine) and a time step of `step` times the critical one;
+	returns the DeformableEngine."""
 	engine = DeformableEngine(**settings)
 	O.engines = [ForceResetter(), *engines, engine]
 	O.dt = step * engine.criticalTimeStep()
@@ -48,7 +58,8 @@ def start(*engines, step=0.8, **settings):
 
 
 def steps(count):
-	"""O.step() so many times: unlike O.run it has no thread to wait for (40 ms), and errors come as they were raised."""
+	"""O.step() so many times: unlike O.run it has no thread to wait for (40 ms),
+	and errors come as they were raised."""
 	for _ in range(count):
 		O.step()
 
@@ -100,7 +111,10 @@ def state_velocities(ids):
 
 def momentum(engine):
 	"""Linear momentum [kg·m/s] of all triangles."""
-	return sum((engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")).sum(axis=0) for kind in ("node", "core"))
+	return sum(
+		(engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")).sum(axis=0)
+		for kind in ("node", "core")
+	)
 
 
 def angular_momentum(engine):
@@ -117,11 +131,15 @@ def angular_momentum(engine):
 
 def kinetic_energy(engine):
 	"""½ m v² of all translations [J]."""
-	return sum(0.5 * (engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")**2).sum() for kind in ("node", "core"))
+	return sum(
+		0.5 * (engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")**2).sum()
+		for kind in ("node", "core")
+	)
 
 
 def append_bodies(nodes, triangles, material, thickness=1.0):
-	"""Append nodes and triangles as they are, without ddem.append: unchecked, in this order. Returns the body ids of both."""
+	"""Append nodes and triangles as they are, without ddem.append: unchecked, in this order.
+	Returns the body ids of both."""
 	node_ids, triangle_ids = [], []
 	for x, y in nodes:
 		body = Body()

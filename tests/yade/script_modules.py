@@ -17,7 +17,8 @@ def load(name):
 	"""A script as a module."""
 	spec = importlib.util.spec_from_file_location(name, path(name))
 	module = importlib.util.module_from_spec(spec)
-	module.__dict__.update({key: getattr(yade, key) for key in dir(yade) if not key.startswith("_")})  # a YADE script finds these without importing them
+	# a YADE script finds these without importing them
+	module.__dict__.update({key: getattr(yade, key) for key in dir(yade) if not key.startswith("_")})
 	spec.loader.exec_module(module)
 	return module
 

@@ -1,13 +1,16 @@
 # GPL v2 or later, see LICENSE.
-# Rigid bonded particles inside YADE: closed forms of two particles, conservation, failure, friction, walls, saving, a small crushed specimen.
+# Rigid bonded particles inside YADE: closed forms of two particles, conservation, failure, friction, walls, saving,
+# a small crushed specimen.
 import math
 
 import numpy as np
 import pytest
 
 from yade import (
-	BondedMat, ElasticWallMat, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, Quaternion,
-	RampedTranslationEngine, Vector3, ViscousBodyDamping, ddem, utils)
+	BondedMat, ElasticWallMat, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom, InteractionLoop,
+	Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, Quaternion, RampedTranslationEngine, Vector3,
+	ViscousBodyDamping, ddem, utils
+)
 from yade.ddem import bonded, packing
 
 YOUNG, POISSON = 100e9, 0.25
@@ -29,7 +32,12 @@ def each_test_has_its_scene():
 
 def new_scene():
 	O.reset()
-	O.materials.append(BondedMat(label="rock", young=YOUNG, poisson=POISSON, cohesion=COHESION, bondFrictionAngle=math.atan(0.5), density=2600))
+	O.materials.append(
+		BondedMat(
+			label="rock", young=YOUNG, poisson=POISSON, cohesion=COHESION, bondFrictionAngle=math.atan(0.5),
+			density=2600
+		)
+	)
 
 
 def pair(radius1=RADIUS, radius2=RADIUS, gap=0.0, bond=True):
@@ -37,7 +45,9 @@ def pair(radius1=RADIUS, radius2=RADIUS, gap=0.0, bond=True):
 	spheres = packing.Packing([(0, 0, 0), (radius1 + radius2 + gap, 0, 0)], [radius1, radius2], bonds=[(0, 1)])
 	if bond:
 		return bonded.append(spheres, "rock").ids.tolist()
-	return O.bodies.append([utils.sphere(c, r, material="rock") for c, r in zip(spheres.centres.tolist(), spheres.radii.tolist())])
+	return O.bodies.append(
+		[utils.sphere(c, r, material="rock") for c, r in zip(spheres.centres.tolist(), spheres.radii.tolist())]
+	)
 
 
 def static_engines():
@@ -92,7 +102,9 @@ class TestClosedForms:
 		O.step()
 		shear = math.pi * (2e-3)**2 * YOUNG / 2.5 / 4e-3 * 1e-7  # G A/d0 with R = d0/2
 		assert loads(one)[0][1] == pytest.approx(shear, rel=1e-9)
-		assert loads(one)[1][2] == pytest.approx(shear * 2e-3, rel=1e-9) and loads(two)[1][2] == pytest.approx(shear * 2e-3, rel=1e-9)
+		assert loads(one)[1][2] == pytest.approx(shear * 2e-3, rel=1e-9) and loads(two)[1][2] == pytest.approx(
+			shear * 2e-3, rel=1e-9
+		)
 
 	def test_rest_length_is_the_first_distance(self):
 		for gap in (-1e-5, 1e-5):
@@ -177,7 +189,9 @@ class TestFailure:
 				O.bodies[body].state.pos += Vector3(0, 1e-4, 0)
 			O.step()
 		records = [(b.iter, b.id1, b.id2) for b in bonded.law().brokenBonds()]
-		assert records == sorted(records) and [r[1:] for r in records] == [(4, 5), (0, 1), (1, 2), (2, 3), (3, 4)]
+		assert records == sorted(records) and [r[1:] for r in records] == [
+			(4, 5), (0, 1), (1, 2), (2, 3), (3, 4)
+		]
 
 
 class TestFriction:
@@ -204,7 +218,11 @@ class TestFriction:
 class TestConservation:
 	def test_momenta_and_energy_of_free_flight(self):
 		random = np.random.default_rng(5)
-		sample = bonded.append(packing.Packing([(0, 0, 0), (2.2e-3, 0, 0), (1e-3, 1.9e-3, 0.4e-3)], [0.7e-3, 1.5e-3, 0.6e-3]), "rock", gap=2e-3)
+		sample = bonded.append(
+			packing.Packing([(0, 0, 0), (2.2e-3, 0, 0), (1e-3, 1.9e-3, 0.4e-3)], [0.7e-3, 1.5e-3, 0.6e-3]),
+			"rock",
+			gap=2e-3,
+		)
 		O.engines = bonded.engines()
 		O.dt = 0.2 * bonded.critical_time_step()
 		O.trackEnergy = True
@@ -216,7 +234,14 @@ class TestConservation:
 		def momenta():
 			linear = sum((b.state.mass * b.state.vel for b in bodies), Vector3.Zero)
 			# positions are half a step ahead of velocities
-			angular = sum((b.state.mass * b.state.pos.cross(b.state.vel) + b.state.inertia[0] * b.state.angVel for b in bodies), Vector3.Zero)
+			angular = sum(
+				(
+					b.state.mass * b.state.pos.cross(b.state.vel)
+					+ b.state.inertia[0] * b.state.angVel
+					for b in bodies
+				),
+				Vector3.Zero,
+			)
 			return np.array(linear), np.array(angular)
 
 		linear, angular = momenta()
@@ -281,13 +306,18 @@ class TestWallsAndMotion:
 			ball = O.bodies.append(utils.sphere((0, side * (0.7e-3 - 1.4e-6), 0), 0.7e-3, material="rock"))
 			static_engines()
 			O.step()
-			assert loads(ball)[0] == pytest.approx([0, side * 307.876, 0], abs=1e-3)  # ESyS-Particle 2.3.5 gives 307.876 N
+			# ESyS-Particle 2.3.5 gives 307.876 N
+			assert loads(ball)[0] == pytest.approx([0, side * 307.876, 0], abs=1e-3)
 			assert np.array_equal(loads(wall)[0], -loads(ball)[0])
 			assert not loads(ball)[1].any()
 
 	def test_speed_grows_linearly_to_its_full_value(self):
 		ball = O.bodies.append(utils.sphere((0, 0, 0), 1e-3, material="rock", fixed=True))
-		O.engines = [ForceResetter(), RampedTranslationEngine(ids=[ball], translationAxis=(0, 0, 2), velocity=3, rampTime=1e-3), NewtonIntegrator(damping=0)]
+		O.engines = [
+			ForceResetter(),
+			RampedTranslationEngine(ids=[ball], translationAxis=(0, 0, 2), velocity=3, rampTime=1e-3),
+			NewtonIntegrator(damping=0),
+		]
 		O.dt = 1e-4
 		speeds = []
 		for _ in range(14):
@@ -297,8 +327,14 @@ class TestWallsAndMotion:
 		assert O.bodies[ball].state.pos[2] == pytest.approx(sum(speeds) * 1e-4)
 
 	def test_a_driven_body_may_be_erased(self):
-		balls = O.bodies.append([utils.sphere((3e-3 * i, 0, 0), 1e-3, material="rock", fixed=True) for i in range(2)])
-		O.engines = [ForceResetter(), RampedTranslationEngine(ids=balls, velocity=3), NewtonIntegrator(damping=0)]
+		balls = O.bodies.append(
+			[utils.sphere((3e-3 * i, 0, 0), 1e-3, material="rock", fixed=True) for i in range(2)]
+		)
+		O.engines = [
+			ForceResetter(),
+			RampedTranslationEngine(ids=balls, velocity=3),
+			NewtonIntegrator(damping=0),
+		]
 		O.trackEnergy = True
 		O.dt = 1e-4
 		O.step()
@@ -308,7 +344,12 @@ class TestWallsAndMotion:
 
 	def test_free_bodies_slow_down_exponentially(self):
 		ball = O.bodies.append(utils.sphere((0, 0, 0), 1e-3, material="rock"))
-		O.engines = [ForceResetter(), InteractionLoop([], [], []), ViscousBodyDamping(viscosity=200, rotationalViscosity=500), NewtonIntegrator(damping=0)]
+		O.engines = [
+			ForceResetter(),
+			InteractionLoop([], [], []),
+			ViscousBodyDamping(viscosity=200, rotationalViscosity=500),
+			NewtonIntegrator(damping=0),
+		]
 		O.bodies[ball].state.vel = Vector3(1, 2, 3)
 		O.bodies[ball].state.angVel = Vector3(30, 20, 10)
 		O.trackEnergy = True
@@ -363,7 +404,11 @@ class TestSpecimen:
 		assert 0 < broken[peak] < broken[-1] < 1
 		assert balance.largest < 1e-2  # the bound that the project states for runs that dissipate
 		records = sample.broken
-		assert len(records) == round(broken[-1] * sample.initial_bonds) == sample.initial_bonds - len(sample.bonds)
+		assert (
+			len(records)
+			== round(broken[-1] * sample.initial_bonds)
+			== sample.initial_bonds - len(sample.bonds)
+		)
 		assert set(records["mode"]) == {"tension", "shear"}
 		order = list(zip(records["step"], records["id1"], records["id2"]))
 		assert order == sorted(order)
@@ -385,7 +430,9 @@ class TestSpecimen:
 			return np.array([[*s.pos, *s.vel, *s.angVel, *s.ori] for s in bodies])
 
 		sample, platens = specimen()
-		O.engines[2].loopOnSortedInteractions = True  # the order of summation does not depend on what the collider remembers; bonds are then computed one by one
+		# the order of summation does not depend on what the collider remembers;
+		# bonds are then computed one by one
+		O.engines[2].loopOnSortedInteractions = True
 		O.run(700, True)
 		assert 0 < bonded.law().brokenCount() < sample.initial_bonds
 		O.save(str(tmp_path / "crushed.yade.gz"))
@@ -411,9 +458,12 @@ class TestSpecimen:
 
 class TestBadInput:
 	@pytest.mark.parametrize("change, words", [
-		({"poisson": 0.5}, r"poisson = 0.5 \[-\] must lie between -1 and 0.5"), ({"young": 0}, "young = 0 Pa must be positive"), ({"young": float("nan")}, "young = nan Pa"),
-		({"density": -1}, "density = -1 kg/m³ must be positive"), ({"cohesion": 0}, "cohesion = 0 Pa"), ({"bondFrictionAngle": 45}, "given in degrees"),
-		({"bondFrictionAngle": -0.1}, "must not be negative"), ({"frictionDynamic": 0.7}, "frictionStatic = 0.6"), ({"tensileStrength": 0}, "tensileStrength = 0 Pa"),
+		({"poisson": 0.5}, r"poisson = 0.5 \[-\] must lie between -1 and 0.5"),
+		({"young": 0}, "young = 0 Pa must be positive"), ({"young": float("nan")}, "young = nan Pa"),
+		({"density": -1}, "density = -1 kg/m³ must be positive"), ({"cohesion": 0}, "cohesion = 0 Pa"),
+		({"bondFrictionAngle": 45}, "given in degrees"),
+		({"bondFrictionAngle": -0.1}, "must not be negative"),
+		({"frictionDynamic": 0.7}, "frictionStatic = 0.6"), ({"tensileStrength": 0}, "tensileStrength = 0 Pa"),
 	])
 	def test_material(self, change, words):
 		with pytest.raises(ValueError, match="BondedMat 'bad': .*" + words):
@@ -443,7 +493,8 @@ class TestBadInput:
 		assert len(O.bodies) == 0
 
 	@pytest.mark.parametrize("pairs, words", [
-		([(0, 0)], "itself"), ([(0, 1), (1, 0)], "bonded already"), ([(0, 9)], "there is no body #9"), ([(0, 2)], "#2 is not a sphere"), ([(0, 3)], "#3 has no BondedMat"),
+		([(0, 0)], "itself"), ([(0, 1), (1, 0)], "bonded already"), ([(0, 9)], "there is no body #9"),
+		([(0, 2)], "#2 is not a sphere"), ([(0, 3)], "#3 has no BondedMat"),
 		([(0, 4)], "same centre"),
 	])
 	def test_pairs(self, pairs, words):
@@ -458,7 +509,8 @@ class TestBadInput:
 		assert len(O.interactions) == 0
 
 	@pytest.mark.parametrize("change, words", [
-		({"velocity": 0}, "velocity = 0 m/s"), ({"velocity": float("nan")}, "velocity = nan"), ({"velocity": -1}, "only push"), ({"ramp": -1}, "ramp = -1 s"),
+		({"velocity": 0}, "velocity = 0 m/s"), ({"velocity": float("nan")}, "velocity = nan"),
+		({"velocity": -1}, "only push"), ({"ramp": -1}, "ramp = -1 s"),
 		({"stiffness": 0}, "stiffness = 0 Pa"),
 	])
 	def test_platens(self, change, words):
@@ -469,7 +521,10 @@ class TestBadInput:
 
 	def test_spheres_at_one_place(self):
 		with pytest.raises(ValueError, match="spheres 0 and 2 of the packing have the same centre"):
-			bonded.append(packing.Packing([(0, 0, 0), (2, 0, 0), (0, 0, 0)], [1, 1, 1], bonds=[(0, 1), (0, 2)]), "rock")
+			bonded.append(
+				packing.Packing([(0, 0, 0), (2, 0, 0), (0, 0, 0)], [1, 1, 1], bonds=[(0, 1), (0, 2)]),
+				"rock",
+			)
 		assert len(O.bodies) == 0
 
 	def test_missing_or_misplaced_engines(self):
@@ -478,7 +533,12 @@ class TestBadInput:
 		with pytest.raises(RuntimeError, match="no ForceResetter"):
 			bonded.check()
 		complete = bonded.engines()
-		O.engines = [complete[0], complete[1], InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], []), complete[-1]]
+		O.engines = [
+			complete[0],
+			complete[1],
+			InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], []),
+			complete[-1],
+		]
 		with pytest.raises(RuntimeError, match="no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb"):
 			bonded.check()
 		O.engines = [complete[0], complete[1], complete[2], bonded.engines()[2], complete[3]]
@@ -501,7 +561,9 @@ class TestBadInput:
 		with pytest.raises(ValueError, match="safety = 1.2"):
 			bonded.time_step(1.2)
 
-	@pytest.mark.parametrize("engine, change", [(ViscousBodyDamping, {"viscosity": -1}), (RampedTranslationEngine, {"rampTime": -1})])
+	@pytest.mark.parametrize(
+		"engine, change", [(ViscousBodyDamping, {"viscosity": -1}), (RampedTranslationEngine, {"rampTime": -1})]
+	)
 	def test_engine_parameters(self, engine, change):
 		with pytest.raises(ValueError, match="-1.0* .*must not be negative"):
 			engine(**change)

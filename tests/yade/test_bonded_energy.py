@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# The energy book of bonded particles: what platens put in is found again, in bonds, contacts, walls, motion, broken bonds, friction and damping.
+# The energy book of bonded particles: what platens put in is found again, in bonds, contacts, walls, motion,
+# broken bonds, friction and damping.
 import os
 
 import numpy as np
@@ -21,7 +22,10 @@ def clean_scene():
 
 def irregular():
 	"""241 spheres of 0.8 to 4 mm diameter, unequal where they are bonded."""
-	spheres = packing.read(*(os.path.join(DATA, f"sample_coarse_s1_{part}.csv") for part in ("particles", "bonds")), length_unit="mm")
+	spheres = packing.read(
+		*(os.path.join(DATA, f"sample_coarse_s1_{part}.csv") for part in ("particles", "bonds")),
+		length_unit="mm",
+	)
 	spheres.lower, spheres.upper = np.array([-5e-3, 0, -5e-3]), np.array([5e-3, 20e-3, 5e-3])
 	return spheres
 
@@ -45,8 +49,16 @@ def crush(spheres, convention="consistent", safety=0.2, duration=8e-5, viscosity
 
 
 @pytest.mark.parametrize(
-	"material", [{}, {"frictionStatic": 0.6, "frictionDynamic": 0.6}, {"gradualFriction": True}, {"normalDamping": 0.2, "shearDamping": 0.2},
-		{"gradualFriction": True, "normalDamping": 0.1, "shearDamping": 0.1}], ids=lambda m: "+".join(m) or "default")
+	"material",
+	[
+		{},
+		{"frictionStatic": 0.6, "frictionDynamic": 0.6},
+		{"gradualFriction": True},
+		{"normalDamping": 0.2, "shearDamping": 0.2},
+		{"gradualFriction": True, "normalDamping": 0.1, "shearDamping": 0.1},
+	],
+	ids=lambda m: "+".join(m) or "default",
+)
 def test_closes_while_bonds_break(material):
 	error, sample = crush(irregular(), **material)
 	assert sample.broken_fraction > 0.3
@@ -61,7 +73,10 @@ def test_closes_for_spheres_that_were_bonded_with_an_overlap():
 	spheres = irregular()
 	spheres.radii = spheres.radii * 1.002
 	spheres.bonds = spheres.neighbours(0)  # spheres that are not bonded would start under load, and so would walls
-	spheres.lower, spheres.upper = (spheres.centres - spheres.radii[:, None]).min(axis=0), (spheres.centres + spheres.radii[:, None]).max(axis=0)
+	spheres.lower, spheres.upper = (
+		(spheres.centres - spheres.radii[:, None]).min(axis=0),
+		(spheres.centres + spheres.radii[:, None]).max(axis=0),
+	)
 	error, sample = crush(spheres)
 	assert sample.broken_fraction > 0.3
 	assert error < 1e-4
@@ -86,7 +101,8 @@ def test_esys_is_conservative_for_equal_radii():
 
 
 def test_esys_begins_to_shake_by_itself_where_radii_are_unequal():
-	"""Its stiffness is not symmetric: motion grows without work from outside, and as fast at half of the time step, so it is not the integrator's."""
+	"""Its stiffness is not symmetric: motion grows without work from outside, and as fast at half of the time step,
+	so it is not the integrator's."""
 	growth = []
 	for convention, safety in (("esys", 0.5), ("esys", 0.25), ("consistent", 0.5)):
 		O.reset()

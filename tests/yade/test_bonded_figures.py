@@ -27,7 +27,9 @@ def options(job, monkeypatch, tmp_path):
 	"""Options from a command line."""
 
 	def read(*arguments):
-		monkeypatch.setattr("sys.argv", [script_modules.path("bonded_figures"), "--out", str(tmp_path / "out"), *arguments])
+		monkeypatch.setattr(
+			"sys.argv", [script_modules.path("bonded_figures"), "--out", str(tmp_path / "out"), *arguments]
+		)
 		return job.read_options()
 
 	return read
@@ -38,12 +40,19 @@ def test_runs_of_the_paper(job, options):
 	groups = job.plan(options())
 	paper = [(group, cases) for group, cases in groups if group.kind == "paper"]
 	ranges = ((0.2e-3, 1e-3), (0.4e-3, 2e-3), (0.8e-3, 4e-3))
-	assert {(group.radii, group.stiffness) for group, _ in paper} == {(radii, stiffness) for radii in ranges for stiffness in (100e9, 102e9)}
+	assert {(group.radii, group.stiffness) for group, _ in paper} == {
+		(radii, stiffness) for radii in ranges for stiffness in (100e9, 102e9)
+	}
 	assert [len(cases) for _, cases in paper] == [3] * 6
-	assert {group.kind for group, _ in groups} == {"paper", "rock density", "consistent bonds", "sample of ESyS-Particle", "sample of ESyS-Particle, rock density"}
+	assert {group.kind for group, _ in groups} == {
+		"paper", "rock density", "consistent bonds", "sample of ESyS-Particle",
+		"sample of ESyS-Particle, rock density"
+	}
 	names = [case.name for _, cases in groups for case in cases]
 	assert len(set(names)) == len(names) == 27
-	assert [case.name for case in job.by_length(case for _, cases in groups for case in cases)][:6] == [name for name in names if "0.2-1.0" in name]
+	assert [case.name for case in job.by_length(case for _, cases in groups for case in cases)][:6] == [
+		name for name in names if "0.2-1.0" in name
+	]
 
 
 def test_every_run_is_understood_by_the_other_script(job, options, monkeypatch):
@@ -53,10 +62,13 @@ def test_every_run_is_understood_by_the_other_script(job, options, monkeypatch):
 			monkeypatch.setattr("sys.argv", ["ucs_bonded.py", *case.arguments])
 			asked, _ = bonded.read_options()
 			assert asked.wall_stiffness == group.stiffness
-			assert (asked.mass_law, asked.density) == (("solid", 2600) if "rock" in group.kind else ("cube", 1e6))
+			assert (asked.mass_law, asked.density) == (
+				("solid", 2600) if "rock" in group.kind else ("cube", 1e6)
+			)
 			assert asked.convention == ("consistent" if "consistent" in group.kind else "esys")
 			assert (asked.velocity, asked.ramp, asked.viscosity, asked.stop) == (0.125, 5e-5, 2, 0)
-			assert asked.strain * 0.02 / 0.25 + 0.5 * asked.ramp == pytest.approx(2.5e-4, rel=1e-12)  # the tutorial's 250000 steps of 1 ns
+			# the tutorial's 250000 steps of 1 ns
+			assert asked.strain * 0.02 / 0.25 + 0.5 * asked.ramp == pytest.approx(2.5e-4, rel=1e-12)
 			if "sample" in group.kind:
 				assert os.path.exists(asked.particles) and os.path.exists(asked.bonds)
 			else:
@@ -66,13 +78,22 @@ def test_every_run_is_understood_by_the_other_script(job, options, monkeypatch):
 def test_quick_and_fewer(job, options):
 	groups = job.plan(options("--quick"))
 	assert {group.radii for group, _ in groups} == {(0.8e-3, 4e-3)} and sum(len(cases) for _, cases in groups) == 8
-	assert sum(len(cases) for _, cases in job.plan(options("--quick", "--packings", "1", "--ranges", "coarse", "medium"))) == 6
+	assert (
+		sum(
+			len(cases)
+			for _, cases in job.plan(options("--quick", "--packings", "1", "--ranges", "coarse", "medium"))
+		)
+		== 6
+	)
 
 
 @pytest.mark.parametrize("arguments, message", [
-	(["--ranges", "huge"], "--ranges: invalid choice: 'huge'"), (["--ranges", "fine", "fine"], "--ranges: fine fine names one twice"),
-	(["--packings", "0"], "--packings: 0 must be at least 1"), (["--jobs", "0"], "--jobs"), (["--safety", "0"], "--safety: 0 leaves no time step"),
-	(["--safety", "2"], "--safety"), (["--fresher"], "unrecognized arguments"), (["--out", "/proc/nowhere"], "--out: cannot write into /proc/nowhere")
+	(["--ranges", "huge"], "--ranges: invalid choice: 'huge'"),
+	(["--ranges", "fine", "fine"], "--ranges: fine fine names one twice"),
+	(["--packings", "0"], "--packings: 0 must be at least 1"), (["--jobs", "0"], "--jobs"),
+	(["--safety", "0"], "--safety: 0 leaves no time step"),
+	(["--safety", "2"], "--safety"), (["--fresher"], "unrecognized arguments"),
+	(["--out", "/proc/nowhere"], "--out: cannot write into /proc/nowhere")
 ])
 def test_bad_options(options, capsys, arguments, message):
 	with pytest.raises(SystemExit) as stopped:
@@ -82,9 +103,14 @@ def test_bad_options(options, capsys, arguments, message):
 
 
 def start(folder, *arguments):
-	script = [script_modules.path("bonded_figures"), "--quick", "--packings", "1", "--fails", "200", "--out", str(folder), *arguments]
+	script = [
+		script_modules.path("bonded_figures"), "--quick", "--packings", "1", "--fails", "200", "--out",
+		str(folder), *arguments
+	]
 	command = [shutil.which("yade"), "-n", "-x", *script]
-	return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+	return subprocess.Popen(
+		command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True
+	)
 
 
 @pytest.mark.slow
@@ -110,7 +136,8 @@ def test_a_small_study(tmp_path):
 	groups = {group["kind"]: group for group in study["groups"] if group["wall_stiffness_Pa"] == 100e9}
 	assert set(groups) == {"paper", "rock density", "consistent bonds"}
 	ucs = {kind: group["spread"]["ucs_MPa"]["median"] for kind, group in groups.items()}
-	# ESyS-Particle's bonds have half the bending moment, so they carry more; heavy spheres as well (page of the study; 16 % in ESyS-Particle's own sample)
+	# ESyS-Particle's bonds have half the bending moment, so they carry more; heavy spheres as well (page of the
+	# study; 16 % in ESyS-Particle's own sample)
 	assert 20 < ucs["rock density"] < ucs["paper"] and ucs["consistent bonds"] < ucs["paper"] < 400
 	page = (folder / "bonded_figures.html").read_text(encoding="utf-8")
 	assert page.count("data:image/png;base64,") == 5 and "--quick" in page

@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 from yade import (
-	BondedInteractionLoop, BondedMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
-	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, SumIntrForcesCb, Vector3, utils)
+	BondedInteractionLoop, BondedMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom,
+	InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
+	Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, SumIntrForcesCb,
+	Vector3, utils
+)
 from yade.ddem import bonded, packing
 
 from recording import run_recording
@@ -30,8 +33,12 @@ def specimen(convention="consistent", together=True, **material):
 	O.engines = bonded.engines(platens, viscosity=2, convention=convention)
 	if not together:
 		functors = (
-			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()], [Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention), Law2_ScGeom_ElasticWallPhys_Repulsion()]
+			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
+			[
+				Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention),
+				Law2_ScGeom_ElasticWallPhys_Repulsion(),
+			]
 		)
 		O.engines = [e if not isinstance(e, InteractionLoop) else InteractionLoop(*functors) for e in O.engines]
 	O.trackEnergy = True
@@ -51,9 +58,28 @@ def test_equals_the_functors(convention):
 		O.run(400, True)  # up to the first broken bonds
 		pairs = bonded.law().bonds()
 		pressed = [(i, j) for i, j in pairs["ids"][::50]]
-		geometry = np.array([[*O.interactions[i, j].geom.normal, O.interactions[i, j].geom.penetrationDepth, *O.interactions[i, j].geom.contactPoint] for i, j in pressed])
-		forces = np.array([[*O.interactions[i, j].phys.normalForce, *O.interactions[i, j].phys.shearForce] for i, j in pressed])
-		results.append((sample.positions, loads(sample), np.array(pairs["normalStress"]), geometry, forces, sample.broken, platens.stress, dict(O.energy.items())))
+		geometry = np.array(
+			[
+				[
+					*O.interactions[i, j].geom.normal,
+					O.interactions[i, j].geom.penetrationDepth,
+					*O.interactions[i, j].geom.contactPoint,
+				]
+				for i, j in pressed
+			]
+		)
+		forces = np.array(
+			[
+				[*O.interactions[i, j].phys.normalForce, *O.interactions[i, j].phys.shearForce]
+				for i, j in pressed
+			]
+		)
+		results.append(
+			(
+				sample.positions, loads(sample), np.array(pairs["normalStress"]), geometry, forces,
+				sample.broken, platens.stress, dict(O.energy.items())
+			)
+		)
 	one, all_ = results
 	assert len(one[5]) > 0
 	for name in ("id1", "id2", "step", "mode"):
@@ -73,7 +99,12 @@ def test_goes_back_to_the_functors_in_the_middle_of_a_run():
 	sample, _ = specimen()
 	O.run(300, True)
 	together = O.engines
-	O.engines = [InteractionLoop(e.geomDispatcher.functors, e.physDispatcher.functors, e.lawDispatcher.functors) if isinstance(e, BondedInteractionLoop) else e for e in O.engines]
+	O.engines = [
+		InteractionLoop(e.geomDispatcher.functors, e.physDispatcher.functors, e.lawDispatcher.functors)
+		if isinstance(e, BondedInteractionLoop)
+		else e
+		for e in O.engines
+	]
 	O.run(100, True)
 	mixed = sample.positions
 	sample, _ = specimen()
@@ -116,12 +147,28 @@ def test_shows_bonds_to_engines_that_may_look():
 	sample, platens = specimen()
 	seen = []
 	pair = bonded.law().bonds()["ids"][10]
-	run_recording(50, 7, lambda: seen.append((O.iter, O.interactions[pair].phys.normalForce.norm(), O.interactions[pair].geom.contactPoint[1])))
+	run_recording(
+		50,
+		7,
+		lambda: seen.append(
+			(
+				O.iter,
+				O.interactions[pair].phys.normalForce.norm(),
+				O.interactions[pair].geom.contactPoint[1],
+			)
+		),
+	)
 	rest = []
 	sample, platens = specimen()
 	for iteration, *_ in seen:
 		O.run(iteration + 1 - O.iter, True)
-		rest.append((iteration, O.interactions[pair].phys.normalForce.norm(), O.interactions[pair].geom.contactPoint[1]))
+		rest.append(
+			(
+				iteration,
+				O.interactions[pair].phys.normalForce.norm(),
+				O.interactions[pair].geom.contactPoint[1],
+			)
+		)
 	assert len(seen) >= 7 and seen == rest
 
 
@@ -132,7 +179,8 @@ def test_does_not_depend_on_the_number_of_threads(subprocess_positions):
 
 @pytest.fixture
 def subprocess_positions(tmp_path):
-	"""Positions and number of broken bonds of the specimen after some steps, from a YADE of its own with the given threads."""
+	"""Positions and number of broken bonds of the specimen after some steps,
+	from a YADE of its own with the given threads."""
 	import subprocess
 	import sys
 	script = tmp_path / "threads.py"
@@ -140,8 +188,8 @@ def subprocess_positions(tmp_path):
 		"from yade import ddem\n"
 		"from yade.ddem import bonded, packing\n"
 		"O.materials.append(BondedMat(label='rock', cohesion=1e15))\n"
-		"sample = bonded.append(packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200), 'rock')\n"
-		"O.engines = bonded.engines()\n"
+		"sample = bonded.append(packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200), "
+		"'rock')\nO.engines = bonded.engines()\n"
 		"O.dt = bonded.time_step(0.5)\n"
 		"for i in sample.ids.tolist(): O.bodies[i].state.vel = Vector3(0, -50 * O.bodies[i].state.pos[1], 0)\n"
 		"O.run(200, True)\n"
@@ -161,7 +209,10 @@ def test_stops_at_the_bond_that_is_not_a_number():
 	O.run(3, True)
 	body = int(sample.bonds[5][0])
 	O.bodies[body].state.pos = Vector3(0, float("nan"), 0)
-	with pytest.raises(RuntimeError, match=rf"the bond of bodies #.* became infinite or not a number in step .*, t = .* s; .* check O.dt"):
+	with pytest.raises(
+		RuntimeError,
+		match=rf"the bond of bodies #.* became infinite or not a number in step .*, t = .* s; .* check O.dt",
+	):
 		O.step()
 
 
@@ -237,7 +288,10 @@ def test_leaves_bonds_to_the_functors_where_the_base_class_must_be_asked(change)
 
 def test_keeps_samples_apart():
 	O.materials.append(BondedMat(label="rock"))
-	samples = [bonded.append(packing.Packing([(0, y, 0), (2e-3, y, 0), (4e-3, y, 0)], [1e-3] * 3), "rock") for y in (0, 1)]
+	samples = [
+		bonded.append(packing.Packing([(0, y, 0), (2e-3, y, 0), (4e-3, y, 0)], [1e-3] * 3), "rock")
+		for y in (0, 1)
+	]
 	O.engines = bonded.engines()
 	O.engines[-1].mask = 2
 	O.dt = 1e-9
@@ -259,13 +313,18 @@ def test_goes_on_after_saving(convention, tmp_path):
 	assert isinstance(O.engines[2], BondedInteractionLoop) and bonded.law().convention == convention
 	O.run(100, True)
 	again = bonded.BondedSample.from_scene()
-	assert again.positions == pytest.approx(expected, abs=1e-12)  # contacts are summed in the order in which the collider has found them
-	assert np.array_equal(again.broken["id1"], broken["id1"]) and np.array_equal(again.broken["step"], broken["step"])
+	# contacts are summed in the order in which the collider has found them
+	assert again.positions == pytest.approx(expected, abs=1e-12)
+	assert np.array_equal(again.broken["id1"], broken["id1"]) and np.array_equal(
+		again.broken["step"], broken["step"]
+	)
 
 
 def test_needs_functors_for_what_it_meets():
 	O.materials.append(BondedMat(label="rock"))
-	O.bodies.append([utils.sphere((0, 0, 0), 1e-3, material="rock"), utils.sphere((1.9e-3, 0, 0), 1e-3, material="rock")])
+	O.bodies.append(
+		[utils.sphere((0, 0, 0), 1e-3, material="rock"), utils.sphere((1.9e-3, 0, 0), 1e-3, material="rock")]
+	)
 	loop = BondedInteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], [Law2_ScGeom_BondedPhys_MohrCoulomb()])
 	O.engines = [ForceResetter(), bonded.engines()[1], loop, NewtonIntegrator()]
 	O.dt = 1e-9

@@ -68,9 +68,15 @@ def test_targets_are_met_and_a_second_start_uses_the_file(job, here, monkeypatch
 	assert found["targets"]["ucs"]["measured"] == pytest.approx(60e6, rel=0.02)
 	# what is found does give the targets, in a test of its own
 	setup = virtualtest.Setup.standard("deformable", "block", size=0.025, velocity=2.0)
-	again = virtualtest.perform(setup, {name: parameter["value"] for name, parameter in found["parameters"].items()}, {"test": "compression", "seed": 1})
+	again = virtualtest.perform(
+		setup,
+		{name: parameter["value"] for name, parameter in found["parameters"].items()},
+		{"test": "compression", "seed": 1},
+	)
 	assert again["ucs"] == pytest.approx(found["targets"]["ucs"]["measured"], rel=1e-9)
-	assert {"calibration.html", "calibration.json", "convergence.png", "evaluations.jsonl", "sensitivities.png"} <= set(os.listdir(tmp_path))
+	assert {
+		"calibration.html", "calibration.json", "convergence.png", "evaluations.jsonl", "sensitivities.png"
+	} <= set(os.listdir(tmp_path))
 	assert len({origin["inputs_sha256"] for origin in origins.of_all(tmp_path).values()}) == 1
 	made = len(here)
 	assert run(job, monkeypatch, tmp_path, *SMALL, *AIM) == 0
@@ -79,9 +85,21 @@ def test_targets_are_met_and_a_second_start_uses_the_file(job, here, monkeypatch
 
 
 def test_target_out_of_reach(job, here, monkeypatch, tmp_path, capsys):
-	assert run(job, monkeypatch, tmp_path, *SMALL, "--ucs", "160e6", "--bounds", "strength=50e6:120e6", "--start", "strength=100e6", "--no-pictures") == 1
+	assert (
+		run(
+			job, monkeypatch, tmp_path, *SMALL, "--ucs", "160e6", "--bounds", "strength=50e6:120e6",
+			"--start", "strength=100e6", "--no-pictures"
+		)
+		== 1
+	)
 	text = capsys.readouterr().out
-	assert "The targets are NOT met: the upper bound of strength, 1.2e+08, keeps it from going further. The nearest is shown" in text
+	assert (
+		(
+			"The targets are NOT met: the upper bound of strength, 1.2e+08, keeps it from going further. "
+			"The nearest is shown"
+		)
+		in text
+	)
 	found = summary(tmp_path)
 	assert found["reached"] is False
 	assert found["parameters"]["strength"]["bound_hit"] == "upper"
@@ -89,7 +107,8 @@ def test_target_out_of_reach(job, here, monkeypatch, tmp_path, capsys):
 
 
 def test_failed_evaluations_are_reported_and_kept(job, monkeypatch, tmp_path, capsys):
-	assert run(job, monkeypatch, tmp_path, *SMALL, "--ucs", "60e6", "--strain", "2e-4", "--budget", "2") == 1  # in another YADE: its words must arrive
+	# in another YADE: its words must arrive
+	assert run(job, monkeypatch, tmp_path, *SMALL, "--ucs", "60e6", "--strain", "2e-4", "--budget", "2") == 1
 	text = capsys.readouterr().out
 	assert "FAILED: test compression, seed 1: the compression test ended at a strain of" in text
 	assert "Nothing could be measured: the first evaluation failed" in text
@@ -104,7 +123,10 @@ def test_failed_evaluations_are_reported_and_kept(job, monkeypatch, tmp_path, ca
 	(["--ucs", "0"], "--ucs: 0 must be positive"),
 	(["--ucs", "60e6", "0.02", "3"], "--ucs takes a value and, if it has one of its own, a tolerance"),
 	(["--ucs", "60e6", "5"], "tolerance = 5.0 must be a part of the target"),
-	(["--ucs", "60e6", "--tune", "kohesion"], "'kohesion' cannot be tuned in the rigid model; there are young, poisson, cohesion"),
+	(
+		["--ucs", "60e6", "--tune", "kohesion"],
+		"'kohesion' cannot be tuned in the rigid model; there are young, poisson, cohesion",
+	),
 	(["--ucs", "60e6", "--tune", "strength"], "'strength' cannot be tuned in the rigid model"),
 	(["--ucs", "60e6", "--set", "cohesion=5e6"], "--set cohesion: it is tuned"),
 	(["--ucs", "60e6", "--set", "frictionAngle=0.5"], "frictionAngle"),
@@ -124,7 +146,9 @@ def test_failed_evaluations_are_reported_and_kept(job, monkeypatch, tmp_path, ca
 ])
 def test_bad_options_are_refused_before_anything_runs(job, monkeypatch, tmp_path, capsys, arguments, message):
 	monkeypatch.setattr(virtualtest.SeparateYade, "__call__", lambda *_: pytest.fail("a test was started"))
-	monkeypatch.setattr(sys, "argv", ["scripts/calibrate.py", "--jobs", "1", "--out", str(tmp_path / "out"), *arguments])
+	monkeypatch.setattr(
+		sys, "argv", ["scripts/calibrate.py", "--jobs", "1", "--out", str(tmp_path / "out"), *arguments]
+	)
 	with pytest.raises(SystemExit) as ended:
 		job.main()
 	assert ended.value.code == 2
@@ -141,13 +165,19 @@ def test_help_explains_every_option(job, monkeypatch, tmp_path, capsys):
 
 
 def test_bulk_and_shear_take_the_place_of_young(job, monkeypatch, tmp_path):
-	monkeypatch.setattr(sys, "argv", ["x", "--model", "deformable", "--young", "30e9", "--tune", "bulk", "shear", "--out", str(tmp_path)])
+	monkeypatch.setattr(
+		sys,
+		"argv",
+		["x", "--model", "deformable", "--young", "30e9", "--tune", "bulk", "shear", "--out", str(tmp_path)],
+	)
 	options, _ = job.read_options()
 	setup, targets, tuned, fixed, _ = job.prepare(options)
 	assert [p.name for p in tuned] == ["bulk", "shear"]
 	assert tuned[0].start / tuned[1].start == pytest.approx(30 / 26)  # Table 1 of Zubelewicz (2018)
 	assert not {"young", "poisson", "bulk", "shear"} & set(fixed)
-	assert virtualtest.material("deformable", {**fixed, **{p.name: p.start for p in tuned}}, 2400).young == pytest.approx(30e9)
+	assert virtualtest.material(
+		"deformable", {**fixed, **{p.name: p.start for p in tuned}}, 2400
+	).young == pytest.approx(30e9)
 
 
 def lines(path):
@@ -173,7 +203,9 @@ def processes(text):
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_run_ends_its_processes_and_goes_on(tmp_path, number):
-	command = [shutil.which("yade"), "-n", "-x", SCRIPT, *AIM, *SMALL, "--jobs", "2", "--out", str(tmp_path / "out")]
+	command = [
+		shutil.which("yade"), "-n", "-x", SCRIPT, *AIM, *SMALL, "--jobs", "2", "--out", str(tmp_path / "out")
+	]
 	environment = {**os.environ, "TMPDIR": str(tmp_path)}  # evaluations are found by it
 	process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
 

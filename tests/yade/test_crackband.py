@@ -26,7 +26,13 @@ def mesh():
 	"""Triangles of several sizes, some of steel."""
 	elastic("steel")
 	O.materials.append(ConcreteDamageMat(label="concrete", fractureEnergy=50e3))
-	return ddem.mesh.rectangle(0.02, 0.03, lambda x, y: 0.002 + 0.1 * y, pattern="unstructured", regions={"steel": ddem.mesh.box(0.005, 0.005, 0.01, 0.01)})
+	return ddem.mesh.rectangle(
+		0.02,
+		0.03,
+		lambda x, y: 0.002 + 0.1 * y,
+		pattern="unstructured",
+		regions={"steel": ddem.mesh.box(0.005, 0.005, 0.01, 0.01)},
+	)
 
 
 def test_energy_per_area_of_a_row_is_that_of_the_reference_width(mesh):
@@ -41,7 +47,10 @@ def test_energy_per_area_of_a_row_is_that_of_the_reference_width(mesh):
 
 def test_it_leaves_what_the_seed_draws_and_is_off_unless_asked_for(mesh):
 	choices = ({}, {"seed": 4}, {"seed": 4, "crack_band": 0.01})
-	plain, drawn, both = (ddem.append(mesh, {"": "concrete", "steel": "steel"}, position=(x, 0, 0), **chosen) for x, chosen in enumerate(choices))
+	plain, drawn, both = (
+		ddem.append(mesh, {"": "concrete", "steel": "steel"}, position=(x, 0, 0), **chosen)
+		for x, chosen in enumerate(choices)
+	)
 	concrete = np.setdiff1d(np.arange(len(plain.triangle_ids)), plain.mesh.region("steel"))
 	assert (energies(plain) == -1).all()  # the material's own
 	assert (factors(plain) == 1).all() and (factors(drawn) == 1).all()

@@ -1,13 +1,14 @@
 # GPL v2 or later, see LICENSE.
-# Bad input to deformable triangles: each is an exception that says the value, the unit, the place and the way out, and leaves nothing half built.
+# Bad input to deformable triangles: each is an exception that says the value, the unit, the place and the way out,
+# and leaves nothing half built.
 import math
 
 import numpy as np
 import pytest
 
 from yade import (
-	Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTriangle, ElastMat, ForceResetter, InteractionLoop, Matrix3, NewtonIntegrator, O, PyRunner, Vector3,
-	ddem
+	Body, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTriangle, ElastMat, ForceResetter,
+	InteractionLoop, Matrix3, NewtonIntegrator, O, PyRunner, Vector3, ddem
 )
 
 from deformable_samples import append_bodies, bodies, elastic, skewed_mesh, start, steps
@@ -58,7 +59,11 @@ BAD_CONCRETE = [
 ]
 
 
-@pytest.mark.parametrize("kind, wrong, says", [(k, *bad) for k in (DeformableElastMat, ConcreteDamageMat) for bad in BAD_MATERIALS] + [(ConcreteDamageMat, *bad) for bad in BAD_CONCRETE])
+@pytest.mark.parametrize(
+	"kind, wrong, says",
+	[(k, *bad) for k in (DeformableElastMat, ConcreteDamageMat) for bad in BAD_MATERIALS]
+	+ [(ConcreteDamageMat, *bad) for bad in BAD_CONCRETE],
+)
 def test_a_bad_material_is_refused_when_it_is_made(kind, wrong, says):
 	with pytest.raises(ValueError) as error:
 		kind(label="mine", **wrong)
@@ -74,7 +79,15 @@ def test_a_bad_material_is_refused_with_its_label_when_it_is_changed():
 		material = ConcreteDamageMat(label="mine")
 
 
-@pytest.mark.parametrize("name, value, says", [("young", -1, "young = -1 Pa"), ("poisson", 0.5, "poisson = 0.5"), ("density", 0, "density = 0 kg/m³"), ("density", math.nan, "density = nan kg/m³")])
+@pytest.mark.parametrize(
+	"name, value, says",
+	[
+		("young", -1, "young = -1 Pa"),
+		("poisson", 0.5, "poisson = 0.5"),
+		("density", 0, "density = 0 kg/m³"),
+		("density", math.nan, "density = nan kg/m³"),
+	],
+)
 def test_a_material_gone_bad_is_refused_before_the_run(name, value, says):
 	material = elastic("mine")
 	ddem.append(skewed_mesh(), material)
@@ -166,13 +179,31 @@ SPOILED = [
 	(spoil_shape("thickness", math.nan), (*TRIANGLE, "thickness = nan m")),
 	(spoil_shape("fractureEnergy", 0), (*TRIANGLE, "fractureEnergy = 0", "J/m³", "positive")),
 	(spoil_shape("fractureEnergy", math.nan), (*TRIANGLE, "fractureEnergy = nan", "J/m³")),
-	(spoil_shape("initialDamage", Matrix3(0.1, 0.05, 0, 0, 0.1, 0, 0, 0, 0)), (*TRIANGLE, "initialDamage", "symmetric")),
-	(spoil_shape("initialDamage", Matrix3(0.1, 0, 0.1, 0, 0.1, 0, 0.1, 0, 0)), (*TRIANGLE, "initialDamage", "zero xz and yz")),
-	(spoil_shape("initialDamage", Matrix3(0.1, 0.2, 0, 0.2, 0.1, 0, 0, 0, 0)), (*TRIANGLE, "initialDamage", "negative principal value")),
-	(spoil_shape("initialDamage", Matrix3(-0.1, 0, 0, 0, 0.1, 0, 0, 0, 0)), (*TRIANGLE, "initialDamage", "negative")),
+	(
+		spoil_shape("initialDamage", Matrix3(0.1, 0.05, 0, 0, 0.1, 0, 0, 0, 0)),
+		(*TRIANGLE, "initialDamage", "symmetric"),
+	),
+	(
+		spoil_shape("initialDamage", Matrix3(0.1, 0, 0.1, 0, 0.1, 0, 0.1, 0, 0)),
+		(*TRIANGLE, "initialDamage", "zero xz and yz"),
+	),
+	(
+		spoil_shape("initialDamage", Matrix3(0.1, 0.2, 0, 0.2, 0.1, 0, 0, 0, 0)),
+		(*TRIANGLE, "initialDamage", "negative principal value"),
+	),
+	(
+		spoil_shape("initialDamage", Matrix3(-0.1, 0, 0, 0, 0.1, 0, 0, 0, 0)),
+		(*TRIANGLE, "initialDamage", "negative"),
+	),
 	(spoil_shape("initialDamage", Matrix3(0, 0, 0, 0, 0, 0, 0, 0, -0.1)), (*TRIANGLE, "initialDamage", "negative")),
-	(spoil_shape("initialDamage", Matrix3(math.nan, 0, 0, 0, 0, 0, 0, 0, 0)), (*TRIANGLE, "initialDamage", "symmetric")),
-	(lambda: setattr(O.bodies[4], "material", ElastMat()), (*TRIANGLE, "DeformableElastMat or ConcreteDamageMat", "not ElastMat")),
+	(
+		spoil_shape("initialDamage", Matrix3(math.nan, 0, 0, 0, 0, 0, 0, 0, 0)),
+		(*TRIANGLE, "initialDamage", "symmetric"),
+	),
+	(
+		lambda: setattr(O.bodies[4], "material", ElastMat()),
+		(*TRIANGLE, "DeformableElastMat or ConcreteDamageMat", "not ElastMat"),
+	),
 	(lambda: setattr(O.bodies[4], "material", None), (*TRIANGLE, "no material")),
 	(lambda: O.bodies.erase(4), ("body 1", "belongs to no DeformableTriangle", "erase it")),
 	(lambda: O.bodies.erase(2), (*TRIANGLE, "node body 2", "missing")),
@@ -236,12 +267,20 @@ def test_initial_damage_is_that_of_the_start():
 	O.run(3, True)
 	assert block.damage[2] > 0.3
 	shape.initialDamage = 0.7 * Matrix3.Identity
-	with pytest.raises(RuntimeError, match=f"body {block.triangle_ids[2]} .*initialDamage is the damage .* at the start"):
+	with pytest.raises(
+		RuntimeError, match=f"body {block.triangle_ids[2]} .*initialDamage is the damage .* at the start"
+	):
 		O.run(3, True)
 		O.step()
 
 
-@pytest.mark.parametrize("share, rotation", [(0, "none"), (1, "none"), (-0.1, "cosserat"), (0.25, "cosserat"), (0.4, "cosserat"), (math.nan, "corotational")])
+@pytest.mark.parametrize(
+	"share, rotation",
+	[
+		(0, "none"), (1, "none"), (-0.1, "cosserat"), (0.25, "cosserat"), (0.4, "cosserat"),
+		(math.nan, "corotational")
+	],
+)
 def test_a_bad_vertex_share_is_refused(share, rotation):
 	append_bodies(SQUARE, TWO, elastic())
 	O.engines = [ForceResetter(), DeformableEngine(rotation=rotation, vertexShare=share)]
@@ -283,7 +322,10 @@ def test_a_time_step_above_the_critical_one_is_refused():
 		O.step()
 	body, bound = engine.rulingTriangle()
 	assert body in triangles and bound == critical
-	assert_says(error, f"O.dt = {O.dt:g} s", f"critical time step {critical:g} s", f"body {body}", "0.8*engine.criticalTimeStep()")
+	assert_says(
+		error, f"O.dt = {O.dt:g} s", f"critical time step {critical:g} s", f"body {body}",
+		"0.8*engine.criticalTimeStep()"
+	)
 	assert O.iter == 0
 	O.dt = 0.999 * critical
 	steps(1)
@@ -295,10 +337,16 @@ def test_a_time_step_above_the_critical_one_is_refused():
 
 WRONG_ENGINES = [
 	(lambda: [DeformableEngine(), ForceResetter()], "wrong order.*ForceResetter.*put it first"),
-	(lambda: [ForceResetter(), DeformableEngine(), InteractionLoop([], [], [])], "wrong order.*InteractionLoop.*put DeformableEngine after it"),
+	(
+		lambda: [ForceResetter(), DeformableEngine(), InteractionLoop([], [], [])],
+		"wrong order.*InteractionLoop.*put DeformableEngine after it",
+	),
 	(lambda: [ForceResetter(), DeformableEngine(), DeformableEngine()], "two DeformableEngine with the same bit"),
 	(lambda: [DeformableEngine()], "no ForceResetter.*first"),
-	(lambda: [ForceResetter(), DeformableEngine(), NewtonIntegrator(mask=1 << 20)], "NewtonIntegrator.mask.*remove"),
+	(
+		lambda: [ForceResetter(), DeformableEngine(), NewtonIntegrator(mask=1 << 20)],
+		"NewtonIntegrator.mask.*remove",
+	),
 ]
 
 
@@ -326,7 +374,11 @@ def test_a_newton_integrator_that_has_moved_the_bodies_is_refused():
 
 def test_a_newton_integrator_that_stands_first_is_accepted_once_it_knows():
 	append_bodies(SQUARE, TWO, elastic())
-	O.engines = [ForceResetter(), NewtonIntegrator(gravity=(0, -10, 0), damping=0), DeformableEngine(gravity=(0, -10, 0))]
+	O.engines = [
+		ForceResetter(),
+		NewtonIntegrator(gravity=(0, -10, 0), damping=0),
+		DeformableEngine(gravity=(0, -10, 0)),
+	]
 	O.dt = ddem.time_step()
 	steps(10)
 	for body in O.bodies:
@@ -391,7 +443,8 @@ def test_a_run_ends_when_it_is_paused_or_fails():
 
 @pytest.mark.parametrize(
 	"wrong, says", [
-		({"velocity": 0}, "velocity = 0 m/s"), ({"velocity": math.nan}, "velocity = nan m/s"), ({"velocity": 1, "ramp": -1}, "ramp = -1 s"),
+		({"velocity": 0}, "velocity = 0 m/s"), ({"velocity": math.nan}, "velocity = nan m/s"),
+		({"velocity": 1, "ramp": -1}, "ramp = -1 s"),
 		({"velocity": 1, "lateral": "loose"}, "'loose'.*'fixed'.*'free'")
 	]
 )

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# Deformable triangles move as mechanics says: patch test, rigid spin, momenta, energy, prescribed motion, forces of other engines, gravity, damping.
+# Deformable triangles move as mechanics says: patch test, rigid spin, momenta, energy, prescribed motion,
+# forces of other engines, gravity, damping.
 import math
 import sys
 
@@ -11,8 +12,8 @@ from hypothesis import strategies as st
 from yade import ForceEngine, O, PyRunner, RampedTranslationEngine, TranslationEngine, Vector3, ddem
 
 from deformable_samples import (
-	TABLE_1, TREATMENTS, agitate, angular_momentum, append_bodies, bodies, elastic, equilateral_mesh, kinetic_energy, lame, momentum, place, set_velocity, skewed_mesh,
-	start, state_positions, steps
+	TABLE_1, TREATMENTS, agitate, angular_momentum, append_bodies, bodies, elastic, equilateral_mesh,
+	kinetic_energy, lame, momentum, place, set_velocity, skewed_mesh, start, state_positions, steps
 )
 
 OBJECTIVE = ("corotational", "cosserat")
@@ -58,20 +59,23 @@ def test_patch_homogeneous_deformation_gives_its_exact_stress_everywhere(treatme
 	f = np.eye(2) + np.reshape(gradient, (2, 2))
 	if treatment != "none":
 		f = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]]) @ f
-	for body in bodies(block.triangle_ids):  # what is held does not move in the one step that takes up the positions
+	# what is held does not move in the one step that takes up the positions
+	for body in bodies(block.triangle_ids):
 		body.state.blockedDOFs = "xyzXYZ"
 	block.hold(block.node_ids)
 	start(rotation=treatment)
 	impose(block, f, treatment)
 	O.step()
 	expected = expected_stress(f, treatment, material)
-	assert np.abs(block.stress - expected).max() < 1e-13 * material.bulk  # positions carry round-off, 1e-17 m over 3 mm
+	# positions carry round-off, 1e-17 m over 3 mm
+	assert np.abs(block.stress - expected).max() < 1e-13 * material.bulk
 
 
 @pytest.mark.parametrize("treatment", TREATMENTS)
 def test_patch_inner_nodes_feel_no_force(treatment):
 	material = elastic()
-	mesh = equilateral_mesh() if treatment == "cosserat" else skewed_mesh()  # elsewhere a strain turns the cores, see DeformableElastMat.rotationStiffness
+	# elsewhere a strain turns the cores, see DeformableElastMat.rotationStiffness
+	mesh = equilateral_mesh() if treatment == "cosserat" else skewed_mesh()
 	block = ddem.append(mesh, material)
 	start(rotation=treatment)
 	impose(block, np.array([[1.1, -0.2], [0.3, 0.9]]), treatment)
@@ -108,7 +112,9 @@ def test_rigid_spin_through_more_than_a_turn_leaves_only_the_centrifugal_stress(
 	material = elastic()
 	block = ddem.append(skewed_mesh(), material)
 	engine = start(rotation=treatment)
-	centre = sum((engine.array(k + "Mass")[:, None] * engine.array(k + "Position")).sum(axis=0) for k in ("node", "core"))
+	centre = sum(
+		(engine.array(k + "Mass")[:, None] * engine.array(k + "Position")).sum(axis=0) for k in ("node", "core")
+	)
 	centre /= engine.array("nodeMass").sum() + engine.array("coreMass").sum()
 	spin = 300.0
 	set_velocity(block, lambda x, y: (-spin * (y - centre[1]), spin * (x - centre[0])), spin)
@@ -116,10 +122,12 @@ def test_rigid_spin_through_more_than_a_turn_leaves_only_the_centrifugal_stress(
 	O.run(math.ceil(2.2 * 2 * math.pi / spin / O.dt), True)
 	turned = spin * O.time
 	assert turned > 4 * math.pi
-	# Statically the stress of a spinning disc is below ρ ω² R² (Timoshenko and Goodier, Theory of Elasticity, art. 32: (3+ν)/8 of it); put on at once, below twice that.
+	# Statically the stress of a spinning disc is below ρ ω² R² (Timoshenko and Goodier, Theory of Elasticity,
+	# art. 32: (3+ν)/8 of it); put on at once, below twice that.
 	centrifugal = material.density * (spin * radius)**2
 	assert 0.05 < np.abs(block.stress).max() / centrifugal < 2
-	slower = turned * 2 * centrifugal / material.shear  # the strain of that stress makes the block larger, so it turns less
+	# the strain of that stress makes the block larger, so it turns less
+	slower = turned * 2 * centrifugal / material.shear
 	assert slower < 1e-3
 	if treatment == "cosserat":  # counts full turns
 		assert np.abs(block.rotation - turned).max() < slower
@@ -141,7 +149,10 @@ def test_free_flight_conserves_both_momenta_to_round_off(treatment):
 	assert abs(angular_momentum(engine) - angular) < 1e-12 * scale * 0.06  # 0.06 m: size of the block
 
 
-@pytest.mark.parametrize("treatment, speed, tolerance", [("none", 20, 1e-11), ("corotational", 0.02, 1e-6), ("cosserat", 0.02, 1e-6), ("cosserat", 5, 1e-3)])
+@pytest.mark.parametrize(
+	"treatment, speed, tolerance",
+	[("none", 20, 1e-11), ("corotational", 0.02, 1e-6), ("cosserat", 0.02, 1e-6), ("cosserat", 5, 1e-3)],
+)
 def test_energy_book_of_a_vibrating_block_closes(treatment, speed, tolerance):
 	block = ddem.append(skewed_mesh(), elastic())
 	start(rotation=treatment, step=0.9)
@@ -157,7 +168,8 @@ def test_energy_book_of_a_vibrating_block_closes(treatment, speed, tolerance):
 	assert parts["elastPotential"] > 0.1 * first["kinetic"]
 	if treatment == "cosserat":
 		assert parts["elastRotation"] > 1e-3 * first["kinetic"]
-	assert O.energy.total() == pytest.approx(first["kinetic"], rel=0.1)  # what it closes on is the energy that it began with
+	# what it closes on is the energy that it began with
+	assert O.energy.total() == pytest.approx(first["kinetic"], rel=0.1)
 
 
 # --- prescribed motion
@@ -180,7 +192,9 @@ def test_translation_engines_move_held_nodes(at_once):
 	left, right = block.boundary(lambda x, y: x < 0), block.boundary(lambda x, y: x > 0.03)
 	engines = [
 		TranslationEngine(ids=[int(i) for i in left], translationAxis=(0.6, 0.8, 0), velocity=2),
-		RampedTranslationEngine(ids=[int(i) for i in right], translationAxis=(1, 0, 0), velocity=-3, rampTime=2e-5),
+		RampedTranslationEngine(
+			ids=[int(i) for i in right], translationAxis=(1, 0, 0), velocity=-3, rampTime=2e-5
+		),
 	]
 	start(*engines)
 	block.hold([*left, *right])
@@ -229,7 +243,9 @@ def test_forces_of_others_accelerate_the_block(way):
 	assert momentum(engine) == pytest.approx(total * O.time, rel=1e-12)
 	book.record()
 	assert book.error < 1e-6
-	assert -book.parts()["externalWork"] > 0.9 * (total @ total) * O.time**2 / (2 * (engine.array("nodeMass").sum() + engine.array("coreMass").sum()))
+	assert -book.parts()["externalWork"] > 0.9 * (total @ total) * O.time**2 / (
+		2 * (engine.array("nodeMass").sum() + engine.array("coreMass").sum())
+	)
 
 
 def test_a_torque_on_cores_turns_the_block():
@@ -276,12 +292,15 @@ def test_a_column_settles_to_the_stress_of_its_weight(treatment):
 	block.hold(bottom, "y")
 	block.hold(bottom[:1], "x")
 	O.run(8000, True)
-	# The mean of σ_yy follows from the weight by virtual work with w_y = y, exactly in any mesh; σ_xx and σ_xy vanish since the sides are free.
+	# The mean of σ_yy follows from the weight by virtual work with w_y = y, exactly in any mesh;
+	# σ_xx and σ_xy vanish since the sides are free.
 	mean = np.average(block.stress.mean(axis=1), axis=0, weights=block.area)
-	assert mean[1] == pytest.approx(-0.5 * material.density * g * height, rel=2e-5)  # second order in the strain of 1e-5
+	# second order in the strain of 1e-5
+	assert mean[1] == pytest.approx(-0.5 * material.density * g * height, rel=2e-5)
 	assert np.abs(mean[[0, 3]]).max() < 2e-5 * abs(mean[1])
 	weight = material.density * width * height * g
-	felt = sum(O.forces.f(int(i))[1] for i in bottom)  # inner forces on the held nodes and their own weight press on the support
+	# inner forces on the held nodes and their own weight press on the support
+	felt = sum(O.forces.f(int(i))[1] for i in bottom)
 	own = g * sum(O.bodies[int(i)].state.mass for i in bottom)
 	assert felt - own == pytest.approx(-weight, rel=1e-9)
 

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# A scene of deformable triangles that is saved, loaded and continued goes on as if nothing had happened, bit by bit (on one thread as on any number).
+# A scene of deformable triangles that is saved, loaded and continued goes on as if nothing had happened, bit by bit (on
+# one thread as on any number).
 import sys
 
 import numpy as np
@@ -11,11 +12,15 @@ from yade.utils import sphere
 from deformable_samples import agitate, bodies, elastic, skewed_mesh, start, state_positions
 
 ARRAYS = ("nodePosition", "nodeVelocity", "nodeForce", "corePosition", "coreVelocity", "coreForce")
-VALUES = ("nodeIds", "triangleIds", "vertices", "area", "rotation", "fractureEnergy", "damage", "stress", "strain", "plasticStrain", "damageTensor")
+VALUES = (
+	"nodeIds", "triangleIds", "vertices", "area", "rotation", "fractureEnergy", "damage", "stress", "strain",
+	"plasticStrain", "damageTensor"
+)
 
 
 def crushed(rotation="cosserat"):
-	"""Concrete and steel under a ramped platen, beside a falling sphere, with the energy book; recorded by a PyRunner."""
+	"""Concrete and steel under a ramped platen, beside a falling sphere, with the energy book;
+	recorded by a PyRunner."""
 	O.materials.append(ConcreteDamageMat(label="concrete"))
 	elastic("steel", bulk=151e9, shear=81e9, density=8030)
 	mesh = ddem.mesh.rectangle(0.02, 0.04, size=0.005, regions={"steel": ddem.mesh.box(0.005, 0.015, 0.015, 0.025)})
@@ -45,7 +50,10 @@ def engine_of_scene():
 def everything():
 	"""All state that a scene has, for comparison bit by bit."""
 	engine = engine_of_scene()
-	found = {name: engine.array(name).copy() for name in ARRAYS + (("coreRotation", "coreSpin") if engine.rotation == "cosserat" else ())}
+	found = {
+		name: engine.array(name).copy()
+		for name in ARRAYS + (("coreRotation", "coreSpin") if engine.rotation == "cosserat" else ())
+	}
 	found.update({name: engine.values(name) for name in VALUES})
 	found["State"] = state_positions(range(len(O.bodies)))
 	found["energy"] = [value for _, value in sorted(O.energy.items())]
@@ -70,7 +78,10 @@ def records():
 RECORDER = {"command": "record_positions()", "iterPeriod": 7}
 
 
-STORES = [("cosserat", where) for where in ("scene.xml", "scene.xml.bz2", "scene.bin.gz", "memory")] + [("corotational", "memory"), ("none", "memory")]
+STORES = [("cosserat", where) for where in ("scene.xml", "scene.xml.bz2", "scene.bin.gz", "memory")] + [
+	("corotational", "memory"),
+	("none", "memory"),
+]
 
 
 @pytest.mark.parametrize("rotation, where", STORES)
@@ -130,7 +141,8 @@ def test_saving_does_not_disturb_the_run(tmp_path):
 
 
 def test_a_scene_saved_by_a_pyrunner_has_the_state_of_that_step(tmp_path):
-	"""YADE repeats the engines of a step in which a scene was saved, so the loaded scene is one step ahead of its O.iter, as with NewtonIntegrator."""
+	"""YADE repeats the engines of a step in which a scene was saved, so the loaded scene is one step ahead of its
+	O.iter, as with NewtonIntegrator."""
 	path = str(tmp_path / "scene.xml")
 	vibrating()
 	sys.modules["__main__"].save_scene = lambda: O.save(path)

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# Deformable triangles as part of a YADE scene: what Python sees and changes, other bodies and engines, bodies that come later, order and threads.
+# Deformable triangles as part of a YADE scene: what Python sees and changes, other bodies and engines,
+# bodies that come later, order and threads.
 import os
 import shutil
 import subprocess
@@ -7,7 +8,10 @@ import subprocess
 import numpy as np
 import pytest
 
-from yade import ConcreteDamageMat, DeformableEngine, ForceEngine, ForceResetter, NewtonIntegrator, O, PyRunner, RadialForceEngine, Vector3, ddem
+from yade import (
+	ConcreteDamageMat, DeformableEngine, ForceEngine, ForceResetter, NewtonIntegrator, O, PyRunner,
+	RadialForceEngine, Vector3, ddem
+)
 from yade.utils import sphere
 
 from deformable_samples import (
@@ -91,7 +95,9 @@ def test_state_is_current_in_a_pyrunner_that_is_added_later():
 	agitate(block, 5)
 	O.run(40, True)
 	seen = []
-	O.engines = O.engines + [PyRunner(command=in_main("look", lambda: seen.append((O.iter, staleness(block)))), iterPeriod=7)]
+	O.engines = O.engines + [
+		PyRunner(command=in_main("look", lambda: seen.append((O.iter, staleness(block)))), iterPeriod=7)
+	]
 	O.run(20, True)
 	assert seen[0][0] == 40  # YADE runs it at once, since 40 steps have gone by since step 0
 	assert max(stale for _, stale in seen) == 0
@@ -103,7 +109,14 @@ def test_engines_that_read_state_see_it_current():
 	for look in (False, True):
 		O.reset()
 		block = ddem.append(skewed_mesh(), elastic())
-		start(RadialForceEngine(ids=[int(i) for i in block.node_ids], axisPt=(0.02, 0.4, 0), axisDir=(0, 0, 1), fNorm=2000))
+		start(
+			RadialForceEngine(
+				ids=[int(i) for i in block.node_ids],
+				axisPt=(0.02, 0.4, 0),
+				axisDir=(0, 0, 1),
+				fNorm=2000,
+			)
+		)
 		set_velocity(block, lambda x, y: (800, 0))
 		steps(200) if look else O.run(200, True)
 		results.append(block.positions.copy())
@@ -133,7 +146,13 @@ def test_views_are_the_engine_s_own_memory_and_outlive_the_scene():
 	engine = start()
 	agitate(block, 5)
 	steps(1)
-	views = {name: engine.array(name) for name in ("nodePosition", "nodeVelocity", "nodeForce", "corePosition", "coreVelocity", "coreForce", "coreRotation", "coreSpin")}
+	views = {
+		name: engine.array(name)
+		for name in (
+			"nodePosition", "nodeVelocity", "nodeForce", "corePosition", "coreVelocity", "coreForce",
+			"coreRotation", "coreSpin"
+		)
+	}
 	before = {name: view.copy() for name, view in views.items()}
 	O.run(10, True)
 	for name, view in views.items():
@@ -197,7 +216,9 @@ def test_driven_nodes_that_are_free_to_slide_do_not_feel_who_looks(treatment):
 		O.materials.append(ConcreteDamageMat(label="concrete", density=2400))
 		block = ddem.append(ddem.mesh.rectangle(width=0.04, height=0.08, size=0.01), "concrete")
 		platens = ddem.platens(block, velocity=1.0, ramp=1e-5, lateral="free")
-		O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=treatment)] + ([PyRunner(command="1", iterPeriod=period)] if period else [])
+		O.engines = [ForceResetter(), *platens.engines, DeformableEngine(rotation=treatment)] + (
+			[PyRunner(command="1", iterPeriod=period)] if period else []
+		)
 		O.dt = ddem.time_step(0.8)
 		O.run(200, True)
 		ends.append(block.positions.tolist())
@@ -255,7 +276,8 @@ def test_newton_keeps_the_mask_it_was_given():
 		assert "mask" in str(error)
 		return
 	assert O.bodies[standing].state.pos[1] < 0
-	assert block.displacements[:, 1] == pytest.approx(-10 * O.dt**2 * 40 * 41 / 2, rel=1e-9)  # triangles feel its gravity, too, and once
+	# triangles feel its gravity, too, and once
+	assert block.displacements[:, 1] == pytest.approx(-10 * O.dt**2 * 40 * 41 / 2, rel=1e-9)
 
 
 # --- bodies that come later
@@ -264,14 +286,27 @@ def test_newton_keeps_the_mask_it_was_given():
 def test_a_second_block_leaves_the_state_of_the_first():
 	block, engine = crushed_block()
 	O.run(250, True)
-	names = ("nodePosition", "nodeVelocity", "nodeForce", "corePosition", "coreVelocity", "coreForce", "coreRotation", "coreSpin")
-	arrays = lambda: [engine.array(name)[:len(block.node_ids) if name.startswith("node") else len(block.triangle_ids)].copy() for name in names]
-	values = lambda: [engine.values(name)[:len(block.triangle_ids)] for name in ("stress", "strain", "plasticStrain", "damageTensor", "damage", "rotation")]
+	names = (
+		"nodePosition", "nodeVelocity", "nodeForce", "corePosition", "coreVelocity", "coreForce",
+		"coreRotation", "coreSpin"
+	)
+	arrays = lambda: [
+		engine.array(name)[: len(block.node_ids) if name.startswith("node") else len(block.triangle_ids)].copy()
+		for name in names
+	]
+	values = lambda: [
+		engine.values(name)[: len(block.triangle_ids)]
+		for name in ("stress", "strain", "plasticStrain", "damageTensor", "damage", "rotation")
+	]
 	before = arrays() + values()
 	assert block.damage.max() > 0.01
 	ddem.append(ddem.mesh.rectangle(0.02, 0.04, size=0.005), "concrete", position=(1, 0, 0))
 	assert len(engine.array("nodePosition")) == 2 * len(block.node_ids)
-	for name, old, new in zip(names + ("stress", "strain", "plasticStrain", "damageTensor", "damage", "rotation"), before, arrays() + values()):
+	for name, old, new in zip(
+		names + ("stress", "strain", "plasticStrain", "damageTensor", "damage", "rotation"),
+		before,
+		arrays() + values(),
+	):
 		assert np.array_equal(old, new), name
 
 
@@ -329,7 +364,9 @@ def test_a_new_engine_takes_over_the_state_of_the_old_one(flow_interval):
 		if change:
 			O.engines = [*O.engines[:-1], DeformableEngine(flowInterval=flow_interval, damping=0.1)]
 		O.run(100, True)
-		results.append([block.positions.copy(), np.array(block.stress), [v for _, v in sorted(O.energy.items())]])
+		results.append(
+			[block.positions.copy(), np.array(block.stress), [v for _, v in sorted(O.energy.items())]]
+		)
 	for kept, renewed in zip(*results):
 		assert np.array_equal(kept, renewed)
 
@@ -348,7 +385,10 @@ def test_material_parameters_changed_between_runs_take_effect():
 	steps(1)
 	assert block.stress == pytest.approx(2 * before, rel=1e-12, abs=1)
 	assert block.node_forces == pytest.approx(2 * forces, rel=1e-12, abs=1e-3)
-	for change in (lambda: setattr(material, "density", 100), lambda: setattr(material, "young", 100 * material.young)):
+	for change in (
+		lambda: setattr(material, "density", 100),
+		lambda: setattr(material, "young", 100 * material.young),
+	):
 		change()  # both make the critical time step smaller
 		with pytest.raises(RuntimeError, match="above the critical time step"):
 			steps(1)
@@ -378,14 +418,24 @@ def test_result_does_not_depend_on_the_order_of_nodes_and_bodies(kind, speed, to
 		node_order = random.permutation(len(mesh.nodes)) if shuffled else np.arange(len(mesh.nodes))
 		triangle_order = random.permutation(len(mesh.triangles)) if shuffled else np.arange(len(mesh.triangles))
 		number = np.argsort(node_order)
-		triangles = [np.roll(number[mesh.triangles[t]], random.integers(3) if shuffled else 0) for t in triangle_order]
+		triangles = [
+			np.roll(number[mesh.triangles[t]], random.integers(3) if shuffled else 0)
+			for t in triangle_order
+		]
 		node_ids, triangle_ids = append_bodies(mesh.nodes[node_order], triangles, material)
 		engine = start()
 		for body in bodies([*node_ids, *triangle_ids]):
 			x, y = body.state.pos[0], body.state.pos[1]
-			body.state.vel = (speed * 3 * np.sin(200 * y), speed * (4 * x - 20 * y), 0)  # to strains of some 1e-3 times speed
+			# to strains of some 1e-3 times speed
+			body.state.vel = (speed * 3 * np.sin(200 * y), speed * (4 * x - 20 * y), 0)
 		O.run(300, True)
-		results.append((engine.array("nodePosition")[number] - mesh.nodes, engine.values("stress").mean(axis=1)[np.argsort(triangle_order)], engine.values("damage").mean()))
+		results.append(
+			(
+				engine.array("nodePosition")[number] - mesh.nodes,
+				engine.values("stress").mean(axis=1)[np.argsort(triangle_order)],
+				engine.values("damage").mean(),
+			)
+		)
 	(moved, stress, damage), (moved_again, stress_again, damage_again) = results
 	assert np.abs(moved - moved_again).max() < tolerance * np.abs(moved).max()
 	assert np.abs(stress - stress_again).max() < 100 * tolerance * np.abs(stress).max()  # differences of positions
@@ -400,15 +450,18 @@ import numpy as np
 from yade import ddem
 O.materials.append(ConcreteDamageMat(label="concrete"))
 O.materials.append(DeformableElastMat(label="steel", bulk=151e9, shear=81e9, density=8030))
-mesh = ddem.mesh.rectangle(0.1, 0.2, size=0.006, regions={"steel": ddem.mesh.box(0.04, 0.08, 0.06, 0.12)})  # 2244 triangles: work for both threads
+# 2244 triangles: work for both threads
+mesh = ddem.mesh.rectangle(0.1, 0.2, size=0.006, regions={"steel": ddem.mesh.box(0.04, 0.08, 0.06, 0.12)})
 block = ddem.append(mesh, {"": "concrete", "steel": "steel"}, seed=1)
 platens = ddem.platens(block, velocity=60, ramp=2e-6)
-O.engines = [ForceResetter()] + platens.engines + [DeformableEngine(label="deformable", damping=0.1, gravity=(0, -10, 0))]
+engine = DeformableEngine(label="deformable", damping=0.1, gravity=(0, -10, 0))
+O.engines = [ForceResetter()] + platens.engines + [engine]
 O.trackEnergy = True
 O.dt = ddem.time_step(0.5)
 O.run(120, True)
 energy = [value for _, value in sorted(O.energy.items())]
-np.savez(sys.argv[1], position=block.positions, stress=block.stress, damage=block.damage, rotation=block.rotation, energy=energy)
+arrays = {"position": block.positions, "stress": block.stress, "damage": block.damage, "rotation": block.rotation}
+np.savez(sys.argv[1], energy=energy, **arrays)
 """
 
 
@@ -420,8 +473,17 @@ def test_two_threads_give_bitwise_what_one_gives(tmp_path):
 	for threads in (1, 2):
 		output = tmp_path / f"threads{threads}.npz"
 		command = [shutil.which("yade"), "-n", "-x", f"-j{threads}", str(script), str(output)]
-		environment = {**os.environ, "OMP_WAIT_POLICY": "passive"}  # both run at once: threads that wait should not spin
-		runs.append((output, subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)))
+		# both run at once: threads that wait should not spin
+		environment = {**os.environ, "OMP_WAIT_POLICY": "passive"}
+		runs.append(
+			(
+				output,
+				subprocess.Popen(
+					command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+					text=True
+				),
+			)
+		)
 	for output, run in runs:
 		text, _ = run.communicate()
 		assert run.returncode == 0, text

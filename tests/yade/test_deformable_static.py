@@ -1,7 +1,9 @@
 # GPL v2 or later, see LICENSE.
-# At rest, deformable triangles are linear finite elements on the mesh in which each triangle is split into three at its centroid (Alfeld split).
+# At rest, deformable triangles are linear finite elements on the mesh in which each triangle is split into three at its
+# centroid (Alfeld split).
 #
-# The reference is a finite element solver of its own: constant-strain triangles assembled from the gradients of their shape functions, nothing of the plugin.
+# The reference is a finite element solver of its own: constant-strain triangles assembled from the gradients of their
+# shape functions, nothing of the plugin.
 import numpy as np
 import pytest
 import scipy.sparse
@@ -31,7 +33,8 @@ def solve_by_finite_elements(nodes, triangles, materials, thickness, forces, hel
 	rows, columns, values = [], [], []
 	for corners, (lam, mu) in zip(triangles, materials):
 		x = nodes[corners]
-		# the linear interpolation a + b x + c y through the corners: column k of the inverse holds the coefficients of shape function k
+		# the linear interpolation a + b x + c y through the corners:
+		# column k of the inverse holds the coefficients of shape function k
 		coefficients = np.linalg.inv(np.column_stack([np.ones(3), x]))
 		area = 0.5 * np.linalg.det(np.column_stack([np.ones(3), x]))
 		dx, dy = coefficients[1], coefficients[2]
@@ -45,7 +48,9 @@ def solve_by_finite_elements(nodes, triangles, materials, thickness, forces, hel
 		columns.append(np.tile(unknowns, 6))
 		values.append(stiffness.ravel())
 	n = 2 * len(nodes)
-	matrix = scipy.sparse.csr_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n))
+	matrix = scipy.sparse.csr_matrix(
+		(np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=(n, n)
+	)
 	free = np.flatnonzero(~held.ravel())
 	solution = np.zeros(n)
 	solution[free] = scipy.sparse.linalg.spsolve(matrix[free][:, free].tocsc(), forces.ravel()[free])
@@ -55,7 +60,12 @@ def solve_by_finite_elements(nodes, triangles, materials, thickness, forces, hel
 def settle(block, loads, treatment, steps):
 	"""Displacements of vertices and centroids (n, 2) [m] under forces on the vertices, from rest to rest."""
 	for body in bodies([*block.node_ids, *block.triangle_ids]):
-		body.state.pos, body.state.vel, body.state.ori, body.state.angVel = body.state.refPos, Vector3.Zero, ((0, 0, 1), 0), Vector3.Zero
+		body.state.pos, body.state.vel, body.state.ori, body.state.angVel = (
+			body.state.refPos,
+			Vector3.Zero,
+			((0, 0, 1), 0),
+			Vector3.Zero,
+		)
 	for i, force in zip(block.node_ids, loads):
 		O.forces.setPermF(int(i), (*force, 0))
 	engine = start(rotation=treatment, damping=0.7)
@@ -73,7 +83,8 @@ MIXES = {
 @pytest.mark.parametrize("mix", MIXES)
 @pytest.mark.parametrize("treatment", TREATMENTS)
 def test_static_solution_is_that_of_linear_finite_elements_on_the_split_mesh(treatment, mix):
-	"""With 'cosserat' too: a core at rest feels no moment, so it has turned until its rotation strain is zero, and strain is measured the same in any frame nearby."""
+	"""With 'cosserat' too: a core at rest feels no moment, so it has turned until its rotation strain is zero, and
+	strain is measured the same in any frame nearby."""
 	by_region, regions = MIXES[mix]
 	materials = {
 		"concrete": elastic("concrete"),
@@ -99,10 +110,18 @@ def test_static_solution_is_that_of_linear_finite_elements_on_the_split_mesh(tre
 		load = 1e-2 / np.abs(expected).max() * 0.04
 		found = settle(block, load * shape, treatment, 6000)
 	else:
-		# What rotates is linear only up to the strain, and round-off of positions forbids very small ones. With u(f) = L f + Q f² + C f³ + …, opposite loads drop
-		# the even terms and loads f and 2f the cubic one.
+		# What rotates is linear only up to the strain, and round-off of positions forbids very small ones.
+		# With u(f) = L f + Q f² + C f³ + …, opposite loads drop the even terms and loads
+		# f and 2f the cubic one.
 		load = 1e-4 / np.abs(expected).max() * 0.04
-		odd = [0.5 * (settle(block, scale * load * shape, treatment, 6000) - settle(block, -scale * load * shape, treatment, 6000)) for scale in (1, 2)]
+		odd = [
+			0.5
+			* (
+				settle(block, scale * load * shape, treatment, 6000)
+				- settle(block, -scale * load * shape, treatment, 6000)
+			)
+			for scale in (1, 2)
+		]
 		found = (8 * odd[0] - odd[1]) / 6
 	assert np.abs(found - load * expected).max() < 1e-9 * load * np.abs(expected).max()
 
@@ -121,7 +140,9 @@ def test_the_reference_solver_passes_the_patch_test():
 	held = np.zeros(nodes.shape, bool)
 	held[np.isclose(nodes[:, 0], 0), 0] = True
 	held[np.isclose(nodes[:, 1], 0), 1] = True
-	found = solve_by_finite_elements(nodes, triangles, np.tile((lam, mu), (len(triangles), 1)), thickness, forces, held)
+	found = solve_by_finite_elements(
+		nodes, triangles, np.tile((lam, mu), (len(triangles), 1)), thickness, forces, held
+	)
 	modulus = 4 * mu * (lam + mu) / (lam + 2 * mu)  # plane strain, E/(1−ν²)
 	ratio = lam / (lam + 2 * mu)  # ν/(1−ν)
 	strain = stress / modulus

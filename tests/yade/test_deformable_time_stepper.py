@@ -1,14 +1,18 @@
 # GPL v2 or later, see LICENSE.
-"""DeformableTimeStepper: follows the critical time step of triangles that stretch, and leaves alone scenes that need no help."""
+"""DeformableTimeStepper: follows the critical time step of triangles that stretch,
+and leaves alone scenes that need no help."""
 import numpy as np
 import pytest
 
 from deformable_samples import agitate, elastic, place, set_velocity, start, steps
-from yade import ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceResetter, GlobalStiffnessTimeStepper, O, ddem
+from yade import (
+	ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceResetter, GlobalStiffnessTimeStepper, O, ddem
+)
 
 
 def crushed(stepper, rotation="cosserat", velocity=10):
-	"""A small block of concrete under a platen of 10 m/s; its triangles stretch to several times their size as damage lets them go."""
+	"""A small block of concrete under a platen of 10 m/s; its triangles stretch to several times their size
+	as damage lets them go."""
 	O.reset()
 	O.materials.append(ConcreteDamageMat(label="concrete"))
 	block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, 0.01, pattern="crossed"), "concrete", seed=1)
@@ -72,7 +76,9 @@ def test_the_step_rises_again_up_to_the_largest():
 	start(DeformableTimeStepper(timeStepUpdateInterval=1))
 	first = O.dt
 
-	def turn_cores(angle):  # against their vertices: from a right angle on, a core that turns on strains its triangle more than any other motion
+	# against their vertices: from a right angle on, a core that turns on strains its triangle
+	# more than any other motion
+	def turn_cores(angle):
 		for i in block.triangle_ids:
 			O.bodies[int(i)].state.ori = ((0, 0, 1), angle)
 			O.bodies[int(i)].state.angVel = (0, 0, 0)
@@ -122,7 +128,11 @@ def test_one_that_looks_too_seldom_is_told_so():
 
 
 def test_errors_name_value_and_way_out():
-	for values, text in (({"safety": 0.0}, "safety = 0.*0.8 is a good choice"), ({"safety": 1.5}, "safety = 1.5"), ({"largest": -1.0}, "largest = -1.*0 takes O.dt")):
+	for values, text in (
+		({"safety": 0.0}, "safety = 0.*0.8 is a good choice"),
+		({"safety": 1.5}, "safety = 1.5"),
+		({"largest": -1.0}, "largest = -1.*0 takes O.dt"),
+	):
 		with pytest.raises(Exception, match=text):
 			DeformableTimeStepper(**values)
 

@@ -23,10 +23,22 @@ def clean_scene():
 def column(count=6, velocity=-1e-3, shear_stiffness=0.0, **material):
 	"""A column of touching spheres between bonded walls."""
 	O.reset()
-	O.materials.append(BondedMat(label="rock", **{**dict(young=YOUNG, cohesion=COHESION, bondFrictionAngle=math.atan(0.5)), **material}))
-	spheres = packing.Packing([(0, (2 * i + 1) * RADIUS, 0) for i in range(count)], [RADIUS] * count, lower=(-RADIUS, 0, -RADIUS), upper=(RADIUS, 2 * count * RADIUS, RADIUS))
+	O.materials.append(
+		BondedMat(
+			label="rock",
+			**{**dict(young=YOUNG, cohesion=COHESION, bondFrictionAngle=math.atan(0.5)), **material},
+		)
+	)
+	spheres = packing.Packing(
+		[(0, (2 * i + 1) * RADIUS, 0) for i in range(count)],
+		[RADIUS] * count,
+		lower=(-RADIUS, 0, -RADIUS),
+		upper=(RADIUS, 2 * count * RADIUS, RADIUS),
+	)
 	sample = bonded.append(spheres, "rock")
-	platens = bonded.platens(sample, velocity=velocity, ramp=0, stiffness=200e9, bonded=True, shear_stiffness=shear_stiffness)
+	platens = bonded.platens(
+		sample, velocity=velocity, ramp=0, stiffness=200e9, bonded=True, shear_stiffness=shear_stiffness
+	)
 	O.engines = bonded.engines(platens, viscosity=1e5)
 	O.dt = bonded.time_step(0.5)
 	return sample, platens
@@ -96,7 +108,12 @@ def test_time_step_counts_the_walls_springs():
 def test_yade_s_own_functions_understand_walls(bonded_walls):
 	"""utils.getStress and others take the physics of every contact for NormShearPhys."""
 	O.materials.append(BondedMat(label="rock"))
-	spheres = packing.Packing([(0, RADIUS, 0), (0, 3 * RADIUS, 0)], [RADIUS] * 2, lower=(-RADIUS, 0, -RADIUS), upper=(RADIUS, 4 * RADIUS, RADIUS))
+	spheres = packing.Packing(
+		[(0, RADIUS, 0), (0, 3 * RADIUS, 0)],
+		[RADIUS] * 2,
+		lower=(-RADIUS, 0, -RADIUS),
+		upper=(RADIUS, 4 * RADIUS, RADIUS),
+	)
 	sample = bonded.append(spheres, "rock")
 	platens = bonded.platens(sample, velocity=0.01, bonded=bonded_walls)
 	O.engines = bonded.engines(platens, viscosity=1e5)
@@ -131,7 +148,15 @@ def test_bonded_walls_push_as_well():
 
 def test_bad_input():
 	O.materials.append(BondedMat(label="rock"))
-	sample = bonded.append(packing.Packing([(0, RADIUS, 0), (0, 3 * RADIUS, 0)], [RADIUS] * 2, lower=(-RADIUS, 0, -RADIUS), upper=(RADIUS, 5 * RADIUS, RADIUS)), "rock")
+	sample = bonded.append(
+		packing.Packing(
+			[(0, RADIUS, 0), (0, 3 * RADIUS, 0)],
+			[RADIUS] * 2,
+			lower=(-RADIUS, 0, -RADIUS),
+			upper=(RADIUS, 5 * RADIUS, RADIUS),
+		),
+		"rock",
+	)
 	with pytest.raises(ValueError, match="no sphere is within 1.1 radii of the upper face"):
 		bonded.platens(sample, velocity=-1, bonded=True)
 	with pytest.raises(ValueError, match="bonded=True makes walls that pull"):
@@ -143,7 +168,11 @@ def test_bad_input():
 	with pytest.raises(ValueError, match="#0: it is no Wall of ElasticWallMat"):
 		bond(0, [1])
 	wall = O.bodies.append(utils.wall(0.0, axis=1, material=ElasticWallMat()))
-	for spheres, words in (([wall], f"body #{wall} is no sphere of BondedMat"), ([99], "body #99 is no sphere"), ([0, 0], "sphere #0 is bonded to it already")):
+	for spheres, words in (
+		([wall], f"body #{wall} is no sphere of BondedMat"),
+		([99], "body #99 is no sphere"),
+		([0, 0], "sphere #0 is bonded to it already"),
+	):
 		with pytest.raises(ValueError, match=words):
 			bond(wall, spheres)
 	assert all(wall not in (i.id1, i.id2) for i in O.interactions)

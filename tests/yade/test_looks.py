@@ -128,7 +128,9 @@ def follow(command, place, shown):
 
 
 @pytest.mark.parametrize("place", ("before", "after"))
-@pytest.mark.parametrize("command", [*READ.values(), *WRITTEN.values()], ids=[*READ, *(name + " written" for name in WRITTEN)])
+@pytest.mark.parametrize(
+	"command", [*READ.values(), *WRITTEN.values()], ids=[*READ, *(name + " written" for name in WRITTEN)]
+)
 def test_python_does_not_notice_that_state_lags(command, place):
 	seen, end = follow(command, place, shown=False)
 	expected, expected_end = follow(command, place, shown=True)
@@ -161,7 +163,9 @@ def test_what_is_not_finite_stops_the_run_with_its_body():
 @pytest.mark.parametrize("ended_by", ("pause", "stopAtIter", "outside"))
 def test_state_is_current_where_a_look_ends_a_run(ended_by):
 	scene = Scene("after")
-	ends = {"pause": O.pause, "stopAtIter": lambda: give(O, stopAtIter=O.iter + 1), "outside": lambda: None}[ended_by]
+	ends = {"pause": O.pause, "stopAtIter": lambda: give(O, stopAtIter=O.iter + 1), "outside": lambda: None}[
+		ended_by
+	]
 	in_main("command", lambda: O.iter == 6 and ends())
 	if ended_by == "outside":
 		run = BackgroundRun()
@@ -211,7 +215,13 @@ def test_functions_that_touch_one_state_are_those_of_state():
 	assert State.vel.fget in one and State.vel.fset in one and State.displ in one
 	assert not set(map(id, one)) & set(map(id, nothing))
 	assert Body.state.fget in nothing and Body.state.fset not in nothing
-	assert DeformableElastMat.rotationStiffness.fset not in nothing and DeformableEngine.rotation.fset not in nothing
+	assert (
+		DeformableElastMat.rotationStiffness.fset not in nothing
+		and DeformableEngine.rotation.fset not in nothing
+	)
 	assert TranslationEngine.velocity.fset in nothing
-	for function in (utils.kineticEnergy, utils.aabbExtrema, type(O).save, type(O).pause, type(O.bodies).append, Body.material.fset):
+	for function in (
+		utils.kineticEnergy, utils.aabbExtrema, type(O).save, type(O).pause, type(O.bodies).append,
+		Body.material.fset
+	):
 		assert function not in one and function not in nothing

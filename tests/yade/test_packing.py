@@ -15,7 +15,9 @@ def prism():
 
 def test_prism_lies_in_its_box_with_radii_of_its_range(prism):
 	around = prism.radii[:, None]
-	assert (prism.centres - around >= prism.lower - 1e-7).all() and (prism.centres + around <= prism.upper + 1e-7).all()
+	assert (prism.centres - around >= prism.lower - 1e-7).all() and (
+		prism.centres + around <= prism.upper + 1e-7
+	).all()
 	assert prism.radii.min() >= 1e-3 and prism.radii.max() <= 2e-3 * (1 + 1e-12)
 	assert prism.size == pytest.approx([0.01, 0.02, 0.01])
 	assert 0.4 < prism.solid_fraction < 0.74  # between loose and densest packing of equal spheres
@@ -39,7 +41,10 @@ def test_kept_packing_is_the_same_and_only_that(tmp_path, monkeypatch):
 	"""A packing comes back from its file with every digit; one with another parameter is another packing."""
 	asked = {"width": 6e-3, "height": 8e-3, "depth": 6e-3, "rmin": 1e-3, "rmax": 2e-3, "seed": 7, "fails": 50}
 	made = packing.prism(**asked, keep=tmp_path / "kept")
-	for name, value in (("width", 7e-3), ("height", 9e-3), ("depth", 7e-3), ("rmin", 0.9e-3), ("rmax", 1.9e-3), ("seed", 8), ("fails", 60)):
+	for name, value in (
+		("width", 7e-3), ("height", 9e-3), ("depth", 7e-3), ("rmin", 0.9e-3), ("rmax", 1.9e-3), ("seed", 8),
+		("fails", 60)
+	):
 		packing.prism(**{**asked, name: value}, keep=tmp_path / "kept")
 	assert len(list((tmp_path / "kept").iterdir())) == 8
 	monkeypatch.setattr(packing, "_pack", lambda *_: pytest.fail("it was made again"))
@@ -52,7 +57,9 @@ def test_layer_is_flat_and_two_spheres_wide_deep():
 	layer = packing.layer(0.02, 0.03, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
 	assert layer.flat
 	assert layer.size == pytest.approx([0.02, 0.03, 4e-3])
-	assert (layer.centres[:, :2] - layer.radii[:, None] >= -1e-7).all() and (layer.centres[:, :2] + layer.radii[:, None] <= np.array([0.02, 0.03]) + 1e-7).all()
+	assert (layer.centres[:, :2] - layer.radii[:, None] >= -1e-7).all() and (
+		layer.centres[:, :2] + layer.radii[:, None] <= np.array([0.02, 0.03]) + 1e-7
+	).all()
 
 
 def test_packer_is_silent(capfd):
@@ -65,8 +72,10 @@ def test_neighbours_are_all_pairs_within_the_gap():
 	spheres = packing.Packing(random.uniform(0, 1, (150, 3)), 10**random.uniform(-2.3, -0.8, 150))
 	for gap in (0, 0.03):
 		expected = [
-			(i, j) for i, j in itertools.combinations(range(len(spheres)), 2)
-			if np.linalg.norm(spheres.centres[i] - spheres.centres[j]) < spheres.radii[i] + spheres.radii[j] + gap
+			(i, j)
+			for i, j in itertools.combinations(range(len(spheres)), 2)
+			if np.linalg.norm(spheres.centres[i] - spheres.centres[j])
+			< spheres.radii[i] + spheres.radii[j] + gap
 		]
 		assert spheres.neighbours(gap).tolist() == [list(pair) for pair in expected]
 
@@ -77,7 +86,9 @@ def test_files_keep_every_digit(tmp_path, prism):
 		prism.write(tmp_path / "p.csv", tmp_path / "b.csv", length_unit=unit)
 		back = packing.read(tmp_path / "p.csv", tmp_path / "b.csv", length_unit=unit)
 		assert np.array_equal(back.bonds, prism.bonds)
-		assert np.allclose(back.centres, prism.centres, rtol=1e-15, atol=0) and np.allclose(back.radii, prism.radii, rtol=1e-15, atol=0)
+		assert np.allclose(back.centres, prism.centres, rtol=1e-15, atol=0) and np.allclose(
+			back.radii, prism.radii, rtol=1e-15, atol=0
+		)
 
 
 def test_ids_of_a_file_may_be_any_numbers(tmp_path):
@@ -118,7 +129,8 @@ def test_bad_bond_files_name_the_line(tmp_path, lines, words):
 
 
 @pytest.mark.parametrize("change, words", [
-	({"rmax": 6e-3}, "does not fit"), ({"rmin": 3e-3}, "rmin = 0.003 m is above rmax"), ({"width": -1}, "width = -1 m must be positive"),
+	({"rmax": 6e-3}, "does not fit"), ({"rmin": 3e-3}, "rmin = 0.003 m is above rmax"),
+	({"width": -1}, "width = -1 m must be positive"),
 	({"rmin": float("nan")}, "rmin = nan m must be positive"),
 ])
 def test_bad_prisms_are_refused(change, words):
@@ -127,7 +139,8 @@ def test_bad_prisms_are_refused(change, words):
 
 
 @pytest.mark.parametrize("centres, radii, words", [
-	([[0, 0, 0]], [0], "sphere 0: radius = 0.0 m must be positive"), ([[0, 0, float("nan")]], [1], "sphere 0: centre"), ([[0, 0, 0]], [1, 2], "a radius for each centre"),
+	([[0, 0, 0]], [0], "sphere 0: radius = 0.0 m must be positive"),
+	([[0, 0, float("nan")]], [1], "sphere 0: centre"), ([[0, 0, 0]], [1, 2], "a radius for each centre"),
 ])
 def test_bad_packings_are_refused(centres, radii, words):
 	with pytest.raises(ValueError, match=words):

@@ -32,7 +32,10 @@ def test_each_moves_its_own_as_if_alone(by):
 	expected = [alone(0, "corotational"), alone(1, "cosserat")]
 	O.reset()
 	blocks = two_blocks()
-	first, second = DeformableEngine(rotation="corotational"), DeformableEngine(rotation="cosserat", groupMask=1 << 21)
+	first, second = (
+		DeformableEngine(rotation="corotational"),
+		DeformableEngine(rotation="cosserat", groupMask=1 << 21),
+	)
 	if by == "bit":
 		for i in (*blocks[0].triangle_ids, *blocks[0].node_ids):
 			O.bodies[i].groupMask = 1 << 20
@@ -56,13 +59,19 @@ def test_each_moves_its_own_as_if_alone(by):
 
 def test_saving_and_energies_are_of_all(tmp_path):
 	blocks = two_blocks()
-	O.engines = [ForceResetter(), DeformableEngine(ids=list(blocks[0].triangle_ids)), DeformableEngine(groupMask=1 << 21)]
+	O.engines = [
+		ForceResetter(),
+		DeformableEngine(ids=list(blocks[0].triangle_ids)),
+		DeformableEngine(groupMask=1 << 21),
+	]
 	O.dt, O.trackEnergy = 2e-7, True
 	for which, block in enumerate(blocks):
 		agitate(block, 2, seed=which)
 	steps(10)
 	kinetic = sum(
-		0.5 * (e.array(kind + "Mass")[:, None] * e.array(kind + "Velocity")**2).sum() for e in O.engines[1:] for kind in ("node", "core")
+		0.5 * (e.array(kind + "Mass")[:, None] * e.array(kind + "Velocity")**2).sum()
+		for e in O.engines[1:]
+		for kind in ("node", "core")
 	)
 	assert O.energy["kinetic"] == pytest.approx(kinetic, rel=0.2)  # of both; spins and half a step apart
 	O.save(str(tmp_path / "two.yade.gz"))
@@ -77,7 +86,12 @@ def test_saving_and_energies_are_of_all(tmp_path):
 def test_a_stepper_follows_the_stiffest_of_all():
 	left = ddem.append(ddem.mesh.rectangle(**SIZE), elastic())
 	fine = ddem.append(ddem.mesh.rectangle(0.02, 0.02, size=0.002), "elastic", position=(1, 0, 0))
-	O.engines = [ForceResetter(), DeformableTimeStepper(), DeformableEngine(ids=list(left.triangle_ids)), DeformableEngine(groupMask=1 << 21)]
+	O.engines = [
+		ForceResetter(),
+		DeformableTimeStepper(),
+		DeformableEngine(ids=list(left.triangle_ids)),
+		DeformableEngine(groupMask=1 << 21),
+	]
 	O.dt = 1
 	O.step()
 	critical = [e.criticalTimeStep() for e in O.engines[2:]]

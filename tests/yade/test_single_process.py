@@ -7,8 +7,8 @@ import subprocess
 import pytest
 
 from yade import (
-	BondedMat, Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Subdomain,
-	ddem, utils
+	BondedMat, Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O,
+	Subdomain, ddem, utils
 )
 from yade.ddem import bonded
 
@@ -77,7 +77,8 @@ def yade(tmp_path):
 		if processes:
 			command = ["mpirun", "--oversubscribe", "-n", str(processes)] + command
 		done = subprocess.run(
-			command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+			command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+			stderr=subprocess.STDOUT,
 			text=True, env=environment
 		)
 		return done.returncode, done.stdout

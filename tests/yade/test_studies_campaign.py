@@ -13,7 +13,8 @@ CASES = [Case(f"seed{number}", ("--seed", str(number))) for number in (1, 2, 3)]
 
 @pytest.fixture
 def yade(tmp_path):
-	"""A program that does what the text says, with the arguments of the script in $arguments and its folder in $out, and then leaves a summary."""
+	"""A program that does what the text says, with the arguments of the script in $arguments and its folder in
+	$out, and then leaves a summary."""
 
 	def make(text=""):
 		program = tmp_path / "yade"
@@ -43,7 +44,9 @@ def campaign(tmp_path, yade, cases=CASES, **options):
 def test_every_case_has_a_folder(tmp_path, yade, started):
 	said = []
 	folders = campaign(tmp_path, yade("test -d $out"), jobs=2, report=lambda *done: said.append(done)).run()
-	assert {case.name: os.path.basename(folder) for case, folder in folders.items()} == {f"seed{n}": f"seed{n}" for n in (1, 2, 3)}
+	assert {case.name: os.path.basename(folder) for case, folder in folders.items()} == {
+		f"seed{n}": f"seed{n}" for n in (1, 2, 3)
+	}
 	assert started() == ["1", "2", "3"]
 	assert {(case.name, folder) for case, folder, _ in said} == {(case.name, folders[case]) for case in CASES}
 	assert all(seconds >= 0 for _, _, seconds in said)
@@ -76,13 +79,21 @@ def test_unfinished_run_is_made_again_in_an_empty_folder(tmp_path, yade, started
 
 
 def test_failure_is_told_and_the_others_are_kept(tmp_path, yade, started):
-	with pytest.raises(Failed, match="1 of 3 runs failed\nseed2: YADE ended with exit code 3; its last lines, of .*log.txt: nothing | works"):
+	with pytest.raises(
+		Failed,
+		match=(
+			"1 of 3 runs failed\nseed2: YADE ended with exit code 3; its last lines, of .*log.txt: "
+			"nothing | works"
+		),
+	):
 		campaign(tmp_path, yade("case $2 in 2) echo nothing; echo works; exit 3;; esac")).run()
 	campaign(tmp_path, yade()).run()
 	assert started() == ["1", "2", "2", "3"]
 
 
-@pytest.mark.parametrize("text", ["exit 0", "echo '{' > $out/summary.json; exit 0", "echo '{}' > $out/summary.json; exit 0"])
+@pytest.mark.parametrize(
+	"text", ["exit 0", "echo '{' > $out/summary.json; exit 0", "echo '{}' > $out/summary.json; exit 0"]
+)
 def test_run_without_a_summary_has_failed(tmp_path, yade, text):
 	with pytest.raises(Failed, match="no summary.json that can be read"):
 		campaign(tmp_path, yade(text), CASES[:1]).run()

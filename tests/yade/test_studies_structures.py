@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Structures of the report and beyond: their loads, what they measure, and their scripts. What happens to them is checked by the verification cases."""
+"""Structures of the report and beyond: their loads, what they measure, and their scripts. What happens to them is
+checked by the verification cases."""
 import numpy as np
 import origins
 import pytest
@@ -25,7 +26,9 @@ def test_impulse_on_nodes_has_the_force_and_the_place_of_its_pressure(patch):
 	assert (mesh.nodes[nodes, 0] == 0).all()
 
 
-@pytest.mark.parametrize("shape, mean", [("sine-squared", 1 / 2), ("half-sine", 2 / np.pi), ("triangle", 1 / 2), ("trapezoid", 0.9)])
+@pytest.mark.parametrize(
+	"shape, mean", [("sine-squared", 1 / 2), ("half-sine", 2 / np.pi), ("triangle", 1 / 2), ("trapezoid", 0.9)]
+)
 def test_impulse_brings_in_its_momentum(shape, mean):
 	push = impulse.Impulse(shape, pressure=3e6, duration=20e-6)
 	assert push.momentum == pytest.approx(mean * 3e6 * 20e-6 * impulse.HEIGHT, rel=1e-4)  # integrals of the shapes
@@ -43,7 +46,8 @@ def test_regions_of_one_sign_are_counted(waves):
 	mesh = ddem.mesh.rectangle(impulse.WIDTH, impulse.HEIGHT, 0.01)
 	values = np.sin(np.pi * waves * mesh.nodes[:, 1] / impulse.HEIGHT)
 	assert impulse.regions(mesh, values) == waves
-	assert impulse.regions(mesh, values + 0.05 * np.sin(999 * mesh.nodes[:, 0])) == waves  # what is below a tenth does not count
+	# what is below a tenth does not count
+	assert impulse.regions(mesh, values + 0.05 * np.sin(999 * mesh.nodes[:, 0])) == waves
 
 
 def test_sides_are_pressed_evenly():
@@ -64,13 +68,17 @@ def test_pullback_ends_at_the_first_minimum():
 	zeros = np.zeros((9, 2))
 	history = spall.History(1, np.arange(9.0), np.arange(2.0), zeros, zeros, surface, zeros, 0)
 	assert history.pullback == ((10, 5), (2, 4))
-	assert history.spall_stress == pytest.approx(0.5 * 2400 * 5190.8 * 5, rel=1e-4)  # ½ ρ c Δu with c = √((B + 4μ/3)/ρ) of Table 1
+	# ½ ρ c Δu with c = √((B + 4μ/3)/ρ) of Table 1
+	assert history.spall_stress == pytest.approx(0.5 * 2400 * 5190.8 * 5, rel=1e-4)
 
 
 def test_ringing_behind_the_front_is_no_pullback():
 	surface = np.array([0, 10, 9.5, 9.8, 6, 6.2, 3])
 	zeros = np.zeros((7, 2))
-	assert spall.History(1, np.arange(7.0), np.arange(2.0), zeros, zeros, surface, zeros, 0).pullback == ((10, 6), (1, 4))
+	assert spall.History(1, np.arange(7.0), np.arange(2.0), zeros, zeros, surface, zeros, 0).pullback == (
+		(10, 6),
+		(1, 4),
+	)
 
 
 def test_largest_tension_is_that_of_pulses_laid_over_each_other():
@@ -87,7 +95,9 @@ def test_crack_is_where_the_damage_is():
 	mesh = beam.mesh(0.01)
 	x, y = mesh.centroids.T
 	line = beam.LENGTH / 2 + 0.3 * (y - beam.NOTCH)
-	damage = np.repeat(((np.abs(x - line) < 0.01) & (y > beam.NOTCH) & (y < 0.08)).astype(float)[:, None], 3, axis=1)
+	damage = np.repeat(
+		((np.abs(x - line) < 0.01) & (y > beam.NOTCH) & (y < 0.08)).astype(float)[:, None], 3, axis=1
+	)
 	none = np.zeros(2)
 	heights, places = beam.History(mesh, none, none, none, none, none, none, mesh.nodes, damage, 0).crack()
 	assert heights.max() < 0.085 and len(heights) >= 6
@@ -102,15 +112,21 @@ def test_bands_are_found_under_their_angles():
 	none = np.zeros(2)
 	(right, _), (left, _) = confined.History(mesh, 0.0, 1.0, none, none, none, mesh.nodes, damage, 0.0, 0.0).bands()
 	assert (right, left) == (pytest.approx(52, abs=2), pytest.approx(67, abs=2))
-	((_, alone), _) = confined.History(mesh, 0.0, 1.0, none, none, none, mesh.nodes, np.repeat(band(60).astype(float)[:, None], 3, axis=1), 0.0, 0.0).bands()
+	((_, alone), _) = confined.History(
+		mesh, 0.0, 1.0, none, none, none, mesh.nodes, np.repeat(band(60).astype(float)[:, None], 3, axis=1),
+		0.0, 0.0
+	).bands()
 	assert 0.5 < alone <= 1
 
 
 def test_handbook_formulas_of_the_notched_beam():
-	# a/W = 0.3, S/W = 4: V₁ = 1.7162, f = 1.5212 by the polynomials of Tada, Paris and Irwin (1985) and of ASTM E399
+	# a/W = 0.3, S/W = 4: V₁ = 1.7162, f = 1.5212 by the polynomials of Tada, Paris and Irwin
+	# (1985) and of ASTM E399
 	modulus = 60.517e9 / (1 - 0.16379**2)  # E = 9 B μ/(3 B + μ), ν = (3 B − 2 μ)/(6 B + 2 μ)
 	assert beam.opening_compliance() == pytest.approx(4 * 60 * 0.03 * 1.7162 / modulus, rel=1e-3)
-	assert beam.toughness_strength(100) == pytest.approx(np.sqrt(100 * modulus) * 0.1**1.5 / (0.4 * 1.5212), rel=1e-3)
+	assert beam.toughness_strength(100) == pytest.approx(
+		np.sqrt(100 * modulus) * 0.1**1.5 / (0.4 * 1.5212), rel=1e-3
+	)
 	assert beam.bending_strength(6e6) == pytest.approx(6e6 * 0.07**2 / 6 * 10)
 
 
@@ -139,11 +155,21 @@ def test_measures_of_a_block_with_known_damage():
 	x, y = mesh.centroids.T
 	damage = np.where(y > 0.15, 0.95, 0.0)[:, None].repeat(3, axis=1)
 	nodes = mesh.nodes + 0.003 * (mesh.nodes[:, 1:] < 0.05) * (1, 0)
-	run.snapshots[:] = [TriangleSnapshot(1.0, nodes, mesh.triangles, damage, np.where((x > 0.09) & (y > 0.19), 0.4, 0.1 * (y < 0.1)), run.snapshots[0].border)]
+	run.snapshots[:] = [
+		TriangleSnapshot(
+			1.0, nodes, mesh.triangles, damage, np.where((x > 0.09) & (y > 0.19), 0.4, 0.1 * (y < 0.1)),
+			run.snapshots[0].border
+		)
+	]
 	concrete = mesh.areas[mesh.regions == 0].sum()
 	assert crushed.mean_damage(1.0) == pytest.approx(0.95 * 0.005 / concrete)
-	assert crushed.share(1.0, 0.9, 1) == pytest.approx(0.005 / concrete) and crushed.share(1.0, 0, 0.1) == pytest.approx(1 - 0.005 / concrete)
-	assert crushed.mean_damage(1.0, crushed.wedge(top=True)) == pytest.approx(0.95) and crushed.mean_damage(1.0, crushed.wedge(top=False)) == 0
+	assert crushed.share(1.0, 0.9, 1) == pytest.approx(0.005 / concrete) and crushed.share(
+		1.0, 0, 0.1
+	) == pytest.approx(1 - 0.005 / concrete)
+	assert (
+		crushed.mean_damage(1.0, crushed.wedge(top=True)) == pytest.approx(0.95)
+		and crushed.mean_damage(1.0, crushed.wedge(top=False)) == 0
+	)
 	assert mesh.areas[crushed.wedge(top=True)].sum() == pytest.approx(0.04**2, rel=0.02)  # base 8 cm, height 4 cm
 	assert crushed.depth(1.0) == pytest.approx(0.05, abs=0.005)
 	assert crushed.spread(1.0, upper=False) == pytest.approx(0.003) and crushed.spread(1.0, upper=True) == 0
@@ -166,7 +192,9 @@ def test_without_the_bar_the_others_keep_their_fracture_energies():
 	for bar in (True, False):
 		O.reset()
 		crushed = reinforced.run(size=0.02, seed=3, bar=bar, until=2e-6)
-		energies.append(np.array([O.bodies[int(i)].shape.fractureEnergy for i in O.engines[-2].values("triangleIds")]))
+		energies.append(
+			np.array([O.bodies[int(i)].shape.fractureEnergy for i in O.engines[-2].values("triangleIds")])
+		)
 	others = np.setdiff1d(np.arange(len(energies[0])), crushed.mesh.region("bar"))
 	assert np.array_equal(energies[0][others], energies[1][others])
 	assert not np.array_equal(*energies)
@@ -176,19 +204,27 @@ def test_without_the_bar_the_others_keep_their_fracture_energies():
 
 SMALL = {
 	"elastic_impulse": (
-		["--no-reference", "--size", "0.02", "--until", "3e-5", "--instants", "1e-5", "3e-5"], {"displacement.png", "contours.png", "centre.csv", "block.pvd"}
+		["--no-reference", "--size", "0.02", "--until", "3e-5", "--instants", "1e-5", "3e-5"],
+		{"displacement.png", "contours.png", "centre.csv", "block.pvd"},
 	),
 	"reinforced_block": (
-		["--until", "2e-5", "--seeds", "1", "2"], {"mesh.png", "history.png", "shape.png", "realisations.png", "seed-1.csv", "seed-2.csv", "seed-1.pvd"}
+		["--until", "2e-5", "--seeds", "1", "2"],
+		{"mesh.png", "history.png", "shape.png", "realisations.png", "seed-1.csv", "seed-2.csv", "seed-1.pvd"},
 	),
 	"spall_bar": (["--size", "0.01"], {"spall.png", "free_end.csv", "bar.pvd"}),
 	"confined_block": (
-		["--pressures", "0", "--size", "0.025", "--strain", "2e-4"], {"confined.png", "pressure-0-rough.csv", "pressure-0-smooth.csv", "pressure-0.pvd"}
+		["--pressures", "0", "--size", "0.025", "--strain", "2e-4"],
+		{"confined.png", "pressure-0-rough.csv", "pressure-0-smooth.csv", "pressure-0.pvd"},
 	),
-	"notched_beam": (["--sizes", "0.02", "--deflection", "2e-6"], {"bending.png", "size-20-volume.csv", "size-20-band.csv", "beam.pvd"}),
-	"mesh_orientation": (["--count", "150", "--strain", "2e-4"], {"orientation.png", "crossed-150.csv", "alternating-150.csv", "unstructured-150.csv"} | {
-		f"{pattern}-150.pvd" for pattern in ("crossed", "alternating", "unstructured")
-	}),
+	"notched_beam": (
+		["--sizes", "0.02", "--deflection", "2e-6"],
+		{"bending.png", "size-20-volume.csv", "size-20-band.csv", "beam.pvd"},
+	),
+	"mesh_orientation": (
+		["--count", "150", "--strain", "2e-4"],
+		{"orientation.png", "crossed-150.csv", "alternating-150.csv", "unstructured-150.csv"}
+		| {f"{pattern}-150.pvd" for pattern in ("crossed", "alternating", "unstructured")},
+	),
 }
 
 
@@ -205,7 +241,11 @@ def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
 			assert len(files) >= 10 and sorted(time for time, _ in files) == [time for time, _ in files]
 			points, cells, kind, point, cell, time, _ = read(files[-1][1])
 			assert kind == VTK_TRIANGLE and len(cells) > 20 and time == files[-1][0] > 0
-			assert np.abs(point["displacement"]).max() > 0 and np.isfinite(cell["stress"]).all() and np.abs(cell["stress"]).max() > 1e3
+			assert (
+				np.abs(point["displacement"]).max() > 0
+				and np.isfinite(cell["stress"]).all()
+				and np.abs(cell["stress"]).max() > 1e3
+			)
 		if file.endswith(".csv"):
 			assert len(Series.read(tmp_path / "new" / file)) > 10
 	assert str(tmp_path / "new") in capsys.readouterr().out
@@ -213,9 +253,12 @@ def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
 
 WRONG = [
 	("elastic_impulse", ["--patch", "1"], "patch = 1.0 m"), ("elastic_impulse", ["--instants", "1"], "--instants"),
-	("elastic_impulse", ["--pressure", "nan"], "pressure = nan Pa"), ("elastic_impulse", ["--size", "1e-5"], "--size: 1e-05"),
-	("reinforced_block", ["--step", "2"], "--step: 2"), ("reinforced_block", ["--until", "0"], "--until: 0"), ("spall_bar", ["--speed", "0"], "--speed: 0"), ("spall_bar", ["--duration", "1"], "--duration"),
-	("confined_block", ["--pressures", "-1"], "--pressures: -1"), ("notched_beam", ["--sizes", "1"], "--sizes: 1"), ("mesh_orientation", ["--count", "3"], "--count: 3")
+	("elastic_impulse", ["--pressure", "nan"], "pressure = nan Pa"),
+	("elastic_impulse", ["--size", "1e-5"], "--size: 1e-05"),
+	("reinforced_block", ["--step", "2"], "--step: 2"), ("reinforced_block", ["--until", "0"], "--until: 0"),
+	("spall_bar", ["--speed", "0"], "--speed: 0"), ("spall_bar", ["--duration", "1"], "--duration"),
+	("confined_block", ["--pressures", "-1"], "--pressures: -1"), ("notched_beam", ["--sizes", "1"], "--sizes: 1"),
+	("mesh_orientation", ["--count", "3"], "--count: 3")
 ]
 
 

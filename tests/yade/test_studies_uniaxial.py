@@ -37,7 +37,9 @@ def test_record_of_a_test(make, model):
 	platens = make()
 	engines = len(O.engines)
 	called = []
-	test = uniaxial.CompressionTest(platens, duration=2.5e-4, stop=0, recorders=[lambda: called.append(O.time)], critical_dt=O.dt / 0.8)
+	test = uniaxial.CompressionTest(
+		platens, duration=2.5e-4, stop=0, recorders=[lambda: called.append(O.time)], critical_dt=O.dt / 0.8
+	)
 	run = test.run(progress=False)
 
 	assert (run.model, run.dt, run.steps) == (model, O.dt, O.iter)
@@ -50,11 +52,20 @@ def test_record_of_a_test(make, model):
 	expected = 2 * VELOCITY * (series["time"][late] - RAMP / 2) / 0.08
 	np.testing.assert_allclose(series["strain"][late], expected, atol=2 * 2 * VELOCITY * O.dt / 0.08)
 	# stress is the mean of both ends over the face
-	np.testing.assert_allclose(series["stress"], (series["force_top"] + series["force_bottom"]) / (2 * platens.area), rtol=1e-12, atol=1e-6)
+	np.testing.assert_allclose(
+		series["stress"],
+		(series["force_top"] + series["force_bottom"]) / (2 * platens.area),
+		rtol=1e-12,
+		atol=1e-6,
+	)
 	assert 20e6 < run.strength.ucs < 400e6
 	assert 0 < series["damage"][-1] <= 1 and (np.diff(series["damage"]) >= -1e-12).all()
 	# the parts of the energy book are all known, and it closes
-	entries = {name[len("energy_"):] for name in series.units if name.startswith("energy_") and np.abs(series[name]).max() > 0} - {"drift"}
+	entries = {
+		name[len("energy_") :]
+		for name in series.units
+		if name.startswith("energy_") and np.abs(series[name]).max() > 0
+	} - {"drift"}
 	assert entries <= {name for names in ENERGY_PARTS.values() for name in names} | set(EXTERNAL)
 	assert run.energy("input")[-1] > 0
 	stored = sum(part for part in map(run.energy, ENERGY_PARTS) if part is not None)
@@ -94,7 +105,8 @@ def test_damage_counts_concrete_only():
 		O.bodies[int(i)].shape.initialDamage = np.diag([3.0, 0, 0]).tolist()
 	specimen = uniaxial.Specimen(block)
 	specimen.prepare()
-	# η/η_max = Ω²/(1 + Ω²), Zubelewicz (2018), section 3, with n_f = 2; the residual of 1e-6 keeps it from reaching 1
+	# η/η_max = Ω²/(1 + Ω²), Zubelewicz (2018), section 3, with n_f = 2;
+	# the residual of 1e-6 keeps it from reaching 1
 	assert specimen.damage == pytest.approx(0.9, rel=2e-6)
 
 
@@ -104,7 +116,14 @@ def test_block_that_cannot_break():
 		test.run(progress=False)
 
 
-@pytest.mark.parametrize("options, message", [({"duration": 0}, "duration"), ({"duration": 1e-4, "stop": 1}, "stop"), ({"duration": 1e-4, "stop": -0.1}, "stop")])
+@pytest.mark.parametrize(
+	"options, message",
+	[
+		({"duration": 0}, "duration"),
+		({"duration": 1e-4, "stop": 1}, "stop"),
+		({"duration": 1e-4, "stop": -0.1}, "stop"),
+	],
+)
 def test_bad_settings(options, message):
 	with pytest.raises(ValueError, match=message):
 		uniaxial.CompressionTest(deformable(), **options)

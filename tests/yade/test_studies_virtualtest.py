@@ -24,9 +24,14 @@ TENSION = {"test": "tension", "seed": 1}
 
 
 def test_stresses_scale_with_all_moduli_and_strengths_exactly():
-	"""With E, C and density 4 times as large (a power of two, so that rounding is the same) every wave is as fast and every stress 4 times as large."""
+	"""With E, C and density 4 times as large (a power of two, so that rounding is the same) every wave is as fast
+	and every stress 4 times as large."""
 	one = perform(PRISM, BONDS, COMPRESSION)
-	four = perform(Setup(**{**vars(PRISM), "density": 4 * PRISM.density}), {**BONDS, "young": 200e9, "cohesion": 240e6}, COMPRESSION)
+	four = perform(
+		Setup(**{**vars(PRISM), "density": 4 * PRISM.density}),
+		{**BONDS, "young": 200e9, "cohesion": 240e6},
+		COMPRESSION,
+	)
 	assert four["ucs"] == pytest.approx(4 * one["ucs"], rel=1e-9)
 	assert four["young"] == pytest.approx(4 * one["young"], rel=1e-9)
 	assert four["strain_at_peak"] == pytest.approx(one["strain_at_peak"], rel=1e-9)
@@ -42,7 +47,8 @@ def test_elastic_modulus_of_the_block_is_that_of_plane_strain():
 
 def test_bonded_walls_pull_spheres_apart():
 	"""Elastic, the sample is as stiff in tension as in compression; it breaks sooner."""
-	prism = Setup.standard("rigid", "prism", radii=(0.8e-3, 2e-3))  # of larger spheres, only a few bear on the walls
+	# of larger spheres, only a few bear on the walls
+	prism = Setup.standard("rigid", "prism", radii=(0.8e-3, 2e-3))
 	pushed, pulled = perform(prism, BONDS, COMPRESSION), perform(prism, BONDS, TENSION)
 	assert pulled["tension_young"] == pytest.approx(pushed["young"], rel=0.15)
 	assert 0 < pulled["tensile"] < pushed["ucs"]
@@ -51,14 +57,18 @@ def test_bonded_walls_pull_spheres_apart():
 
 def test_convention_of_bonds_is_passed_on():
 	"""ESyS-Particle's bonds have half of the bending moment, so the same parameters carry more."""
-	own, esys = perform(PRISM, BONDS, COMPRESSION), perform(Setup(**{**vars(PRISM), "convention": "esys"}), BONDS, COMPRESSION)
+	own, esys = (
+		perform(PRISM, BONDS, COMPRESSION),
+		perform(Setup(**{**vars(PRISM), "convention": "esys"}), BONDS, COMPRESSION),
+	)
 	assert esys["ucs"] > 1.02 * own["ucs"]
 	with pytest.raises(ValueError, match="convention 'esis' is unknown"):
 		Setup.standard("rigid", "prism", convention="esis")
 
 
 def test_concrete_in_tension_is_positive_and_weaker():
-	"""The ratio of both strengths of this concrete at a point is 5.4 in plane strain (53.5 and 9.92 MPa, Zubelewicz's constants); held ends raise it."""
+	"""The ratio of both strengths of this concrete at a point is 5.4 in plane strain (53.5 and 9.92 MPa,
+	Zubelewicz's constants); held ends raise it."""
 	slow = Setup(**{**vars(BLOCK), "velocity": 1.0, "tension_velocity": 0.5})
 	pushed, pulled = perform(slow, CONCRETE, COMPRESSION), perform(slow, CONCRETE, TENSION)
 	assert set(pulled) & set(pushed) == set()
@@ -76,7 +86,10 @@ def test_seeds_draw_another_specimen_and_the_same_again(tmp_path):
 
 
 def test_specimen_that_does_not_fail_is_no_measurement():
-	with pytest.raises(EvaluationError, match="ended at a strain of 0.0.* MPa before the stress had fallen .* allow a larger strain"):
+	with pytest.raises(
+		EvaluationError,
+		match="ended at a strain of 0.0.* MPa before the stress had fallen .* allow a larger strain",
+	):
 		perform(Setup(**{**vars(BLOCK), "strain": 5e-4}), CONCRETE, COMPRESSION)
 
 
@@ -90,7 +103,8 @@ def test_known_parameters_are_found_again():
 		outcome = Calibration(tuned, targets, bench, sensitivities=False).run()
 	assert outcome.reached
 	assert outcome.best.values["young"] == pytest.approx(truth["young"], rel=0.02)
-	assert outcome.best.values["strength"] == pytest.approx(truth["strength"], rel=0.03)  # its elasticity is about 2/3
+	# its elasticity is about 2/3
+	assert outcome.best.values["strength"] == pytest.approx(truth["strength"], rel=0.03)
 
 
 @pytest.mark.slow
@@ -101,7 +115,9 @@ def test_known_bonds_are_found_again_in_other_processes(tmp_path):
 	measured = perform(prism, {**truth, "poisson": 0.25}, COMPRESSION)
 	targets = [Target(name, measured[name], 0.01) for name in ("young", "ucs")]
 	tuned = parameters("rigid", list(truth), {"young": 50e9, "cohesion": 80e6})
-	with Bench(evaluate, [COMPRESSION], evaluate.settings(), tmp_path / "evaluations.jsonl", jobs=2, budget=20) as bench:
+	with Bench(
+		evaluate, [COMPRESSION], evaluate.settings(), tmp_path / "evaluations.jsonl", jobs=2, budget=20
+	) as bench:
 		outcome = Calibration(tuned, targets, bench).run()
 	assert outcome.reached
 	assert outcome.best.values["young"] == pytest.approx(truth["young"], rel=0.02)
@@ -122,7 +138,16 @@ def test_a_yade_of_its_own_gives_the_same():
 def test_bad_parameter_comes_back_in_words(tmp_path):
 	"""What the other YADE does, in this one: a request goes in, an answer comes out."""
 	request, answer = tmp_path / "request.json", tmp_path / "answer.json"
-	request.write_text(json.dumps({"setup": dataclasses.asdict(PRISM), "values": {"cohesion": -1.0}, "case": COMPRESSION, "cache": None}))
+	request.write_text(
+		json.dumps(
+			{
+				"setup": dataclasses.asdict(PRISM),
+				"values": {"cohesion": -1.0},
+				"case": COMPRESSION,
+				"cache": None,
+			}
+		)
+	)
 	virtualtest.answer(request, str(answer))
 	found = json.loads(answer.read_text())
 	assert found["measured"] is None
@@ -190,6 +215,9 @@ def test_settings_of_the_other_model_are_no_part_of_the_record():
 	assert "size" in deformable and "radii" not in deformable
 
 
-@pytest.mark.parametrize("targets, tests", [(["young"], ["compression"]), (["ucs", "tensile"], ["compression", "tension"]), (["tensile"], ["tension"])])
+@pytest.mark.parametrize(
+	"targets, tests",
+	[(["young"], ["compression"]), (["ucs", "tensile"], ["compression", "tension"]), (["tensile"], ["tension"])],
+)
 def test_only_the_tests_that_targets_need(targets, tests):
 	assert virtualtest.cases(targets, [1, 2]) == [{"test": test, "seed": seed} for test in tests for seed in (1, 2)]

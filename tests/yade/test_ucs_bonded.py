@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""scripts/ucs_bonded.py: exact strengths of a column, a sample with a known result, everything it writes, what it refuses."""
+"""scripts/ucs_bonded.py: exact strengths of a column, a sample with a known result, everything it writes,
+what it refuses."""
 import json
 import math
 import os
@@ -22,7 +23,10 @@ from yade.ddem.series import Series
 DATA = os.path.join(os.path.dirname(__file__), "..", "data", "esys")
 SMALL = ["--radii", "1e-3", "4e-3", "--fails", "500", "--no-progress"]  # 62 spheres
 BARE = ["--no-pictures", "--no-vtk", "--no-progress"]
-PICTURES = {"stress_strain", "wall_forces", "damage", "broken_bonds", "energy", "final_damage", "evolution", "rotation", "engines"}
+PICTURES = {
+	"stress_strain", "wall_forces", "damage", "broken_bonds", "energy", "final_damage", "evolution", "rotation",
+	"engines"
+}
 TENSION, SHEAR = 1, 2  # in ParaView files
 
 
@@ -48,7 +52,10 @@ def perform(job, monkeypatch, tmp_path):
 def small(tmp_path_factory):
 	"""What a user gets on two threads: the folder and the text on the terminal."""
 	folder = tmp_path_factory.mktemp("small")
-	command = [shutil.which("yade"), "-n", "-x", script_modules.path("ucs_bonded"), "--convention", "esys", "--threads", "2", *SMALL]
+	command = [
+		shutil.which("yade"), "-n", "-x", script_modules.path("ucs_bonded"), "--convention", "esys",
+		"--threads", "2", *SMALL
+	]
 	done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
 	assert done.returncode == 0, done.stderr
 	return folder / "out" / "ucs_bonded", done.stdout
@@ -62,22 +69,28 @@ YOUNG, WALL = 50e9, 20e9
 
 @pytest.fixture
 def column(tmp_path):
-	"""Options for a column of equal spheres, in mm, that is loaded so slowly that all its bonds feel the same force. The viscosity ends the swinging after it
-	breaks, and its drag, at most 0.02 m/s · 3e5 /s · 1e-5 kg a sphere, is a thousandth of the force that breaks a bond."""
+	"""Options for a column of equal spheres, in mm, that is loaded so slowly that all its bonds feel the same
+	force. The viscosity ends the swinging after it breaks, and its drag, at most 0.02 m/s · 3e5 /s · 1e-5 kg
+	a sphere, is a thousandth of the force that breaks a bond."""
 	spheres = packing.Packing([[0, (2 * row + 1) * RADIUS, 0] for row in range(COUNT)], [RADIUS] * COUNT)
 	spheres.bonds = spheres.neighbours(1e-6)
 	spheres.write(tmp_path / "particles.csv", tmp_path / "bonds.csv", length_unit="mm")
 	files = ["--particles", tmp_path / "particles.csv", "--bonds", tmp_path / "bonds.csv", "--length-unit", "mm"]
-	material = ["--young", YOUNG, "--wall-stiffness", WALL, "--density", "2600", "--mass-law", "solid", "--viscosity", "3e5"]
+	material = [
+		"--young", YOUNG, "--wall-stiffness", WALL, "--density", "2600", "--mass-law", "solid", "--viscosity",
+		"3e5"
+	]
 	return [*files, *material, "--velocity", "0.02", "--ramp", "1e-4", "--strain", "0.006", *BARE]
 
 
 @pytest.mark.parametrize("convention", ["consistent", "esys"])
 @pytest.mark.parametrize("options, limit", [
-	(["--tan-phi", "1"], 100e6), (["--tan-phi", "2"], 50e6), (["--phi", "30"], 100e6 / math.tan(math.radians(30))), (["--tensile-strength", "30e6"], 30e6)
+	(["--tan-phi", "1"], 100e6), (["--tan-phi", "2"], 50e6), (["--phi", "30"], 100e6 / math.tan(math.radians(30))),
+	(["--tensile-strength", "30e6"], 30e6)
 ])
 def test_column_in_tension_breaks_at_the_tensile_limit_of_its_bonds(column, perform, convention, options, limit):
-	"""A bond of radius R = d0/2 = r carries F = σ π r²; it breaks at σ = C/tan φ, or at the cut-off (paper, eq. 8). The sample's stress is F/A, A = (2r)² (eq. 9)."""
+	"""A bond of radius R = d0/2 = r carries F = σ π r²; it breaks at σ = C/tan φ, or at the cut-off (paper, eq. 8).
+	The sample's stress is F/A, A = (2r)² (eq. 9)."""
 	figures, folder = perform("--test", "tension", "--convention", convention, *column, *options)
 	broken = broken_bonds.read(folder / "rigid_broken_bonds.csv")
 	first = broken[0]
@@ -91,10 +104,13 @@ def test_column_in_tension_breaks_at_the_tensile_limit_of_its_bonds(column, perf
 
 @pytest.mark.parametrize("test", ["compression", "tension"])
 def test_stiffness_of_a_column(column, perform, test):
-	"""Springs in a row: bonds of E A/d0 = π E r/2 between the spheres, π r K at both walls, over the height of 2 r n."""
+	"""Springs in a row: bonds of E A/d0 = π E r/2 between the spheres, π r K at both walls,
+	over the height of 2 r n."""
 	figures, _ = perform("--test", test, *column)
 	compliance = (COUNT - 1) / (math.pi * YOUNG * RADIUS / 2) + 2 / (math.pi * RADIUS * WALL)
-	assert figures["young_GPa"] == pytest.approx(1e-9 * 2 * RADIUS * COUNT / (compliance * (2 * RADIUS)**2), rel=1e-6)
+	assert figures["young_GPa"] == pytest.approx(
+		1e-9 * 2 * RADIUS * COUNT / (compliance * (2 * RADIUS)**2), rel=1e-6
+	)
 
 
 def test_column_in_compression_does_not_break(column, perform):
@@ -109,13 +125,18 @@ def test_column_in_compression_does_not_break(column, perform):
 
 
 def test_sample_from_files_in_the_convention_of_esys(perform):
-	"""Run coarse_s1_D of tests/data/esys: ESyS-Particle 2.3.5 itself has 83.9 GPa on this sample, whose box is 10 x 20 x 10 mm."""
+	"""Run coarse_s1_D of tests/data/esys: ESyS-Particle 2.3.5 itself has 83.9 GPa on this sample,
+	whose box is 10 x 20 x 10 mm."""
 	particles, bonds = (os.path.join(DATA, f"sample_coarse_s1_{part}.csv") for part in ("particles", "bonds"))
 	files = ["--particles", particles, "--bonds", bonds, "--length-unit", "mm"]
-	figures, folder = perform("--convention", "esys", "--safety", "0.4", *files, "--box", "-0.005", "0", "-0.005", "0.005", "0.02", "0.005", *BARE)
+	figures, folder = perform(
+		"--convention", "esys", "--safety", "0.4", *files, "--box", "-0.005", "0", "-0.005", "0.005", "0.02",
+		"0.005", *BARE
+	)
 	assert (figures["particles"], figures["bonds"]) == (241, 707)
 	assert figures["young_GPa"] == pytest.approx(83.9, rel=0.003)
-	assert figures["ucs_MPa"] == pytest.approx(143.5, rel=0.03)  # chaotic after the first bonds; equal steps are compared elsewhere
+	# chaotic after the first bonds; equal steps are compared elsewhere
+	assert figures["ucs_MPa"] == pytest.approx(143.5, rel=0.03)
 	with open(folder / "summary.json") as file:
 		options = json.load(file)["options"]
 	assert (options["mass_law"], options["density"], options["velocity"]) == ("cube", 1e6, 0.125)
@@ -132,7 +153,8 @@ def test_summary(small):
 	figures = summary["models"]["rigid"]
 	assert summary["machine"]["threads"] == 2 == summary["options"]["threads"]
 	for name in (
-		"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "tensile_MPa", "young_GPa", "strain_at_peak",
+		"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa",
+		"tensile_MPa", "young_GPa", "strain_at_peak",
 		"damage_at_peak", "damage_at_end", "energy_error", "bonds", "broken_in_tension", "broken_in_shear"
 	):
 		assert name in figures
@@ -144,20 +166,25 @@ def test_summary(small):
 
 
 def test_series_obeys_the_definitions(small):
-	"""Eq. 9: both forces over twice the face of 10 x 10 mm. Young's modulus: least squares between 20 and 60 % of the strength."""
+	"""Eq. 9: both forces over twice the face of 10 x 10 mm. Young's modulus:
+	least squares between 20 and 60 % of the strength."""
 	folder, _ = small
 	with open(folder / "summary.json") as file:
 		figures = json.load(file)["models"]["rigid"]
 	series = Series.read(folder / "rigid.csv")
 	strain, stress = series["strain"], series["stress"]
-	np.testing.assert_allclose(stress, (series["force_top"] + series["force_bottom"]) / (2 * 1e-4), rtol=1e-12, atol=1e-3)
+	np.testing.assert_allclose(
+		stress, (series["force_top"] + series["force_bottom"]) / (2 * 1e-4), rtol=1e-12, atol=1e-3
+	)
 	assert stress.max() == 1e6 * figures["ucs_MPa"]
 	rows = slice(int(np.argmax(stress >= 0.2 * stress.max())), int(np.argmax(stress >= 0.6 * stress.max())) + 1)
 	assert np.polyfit(strain[rows], stress[rows], 1)[0] == pytest.approx(1e9 * figures["young_GPa"], rel=1e-9)
 	# eq. 11 with walls of 0.125 m/s, which have reached their speed after 50 µs
 	late = series["time"] > 5.5e-5
 	step = 0.25 * figures["dt_s"] / 0.02  # walls have moved on after the forces were found
-	np.testing.assert_allclose(strain[late], 0.25 * (series["time"][late] - 2.5e-5) / 0.02, rtol=1e-9, atol=2 * step)
+	np.testing.assert_allclose(
+		strain[late], 0.25 * (series["time"][late] - 2.5e-5) / 0.02, rtol=1e-9, atol=2 * step
+	)
 
 
 def test_broken_bonds(small):
@@ -167,8 +194,12 @@ def test_broken_bonds(small):
 	broken, series = broken_bonds.read(folder / "rigid_broken_bonds.csv"), Series.read(folder / "rigid.csv")
 	assert len(broken) == figures["broken_in_tension"] + figures["broken_in_shear"] > 20
 	assert (broken["mode"] == "shear").sum() == figures["broken_in_shear"]
-	np.testing.assert_allclose(broken_bonds.counts(broken, series["time"])[:-1], (figures["bonds"] * series["damage"])[:-1], atol=1.01)
-	assert (np.diff(broken["step"]) >= 0).all() and len({(a, b) for a, b in zip(broken["id1"], broken["id2"])}) == len(broken)
+	np.testing.assert_allclose(
+		broken_bonds.counts(broken, series["time"])[:-1], (figures["bonds"] * series["damage"])[:-1], atol=1.01
+	)
+	assert (np.diff(broken["step"]) >= 0).all() and len(
+		{(a, b) for a, b in zip(broken["id1"], broken["id2"])}
+	) == len(broken)
 	# every bond was beyond the envelope τ = C - σ tan φ, with C = 100 MPa and tan φ = 1
 	assert (broken["shear_stress"] + broken["normal_stress"] > 100e6).all()
 	np.testing.assert_allclose(np.linalg.norm(broken["normal"], axis=1), 1, rtol=1e-9)
@@ -184,7 +215,11 @@ def test_list_of_broken_bonds_survives_the_file(tmp_path):
 	broken_bonds.write(records[:0], tmp_path / "none.csv")
 	assert len(broken_bonds.read(tmp_path / "none.csv")) == 0
 	text = (tmp_path / "broken.csv").read_text()
-	for wrong, message in ((text.replace("0.1,", "a,"), "line 3: position"), (text[10:], "line 1"), (text + "1,2\n", "line 5: 2 fields")):
+	for wrong, message in (
+		(text.replace("0.1,", "a,"), "line 3: position"),
+		(text[10:], "line 1"),
+		(text + "1,2\n", "line 5: 2 fields"),
+	):
 		(tmp_path / "wrong.csv").write_text(wrong)
 		with pytest.raises(ValueError, match=message):
 			broken_bonds.read(tmp_path / "wrong.csv")
@@ -194,7 +229,10 @@ def test_page_and_pictures(small):
 	folder, _ = small
 	page = (folder / "report.html").read_text(encoding="utf-8")
 	assert page.count("data:image/png;base64,") == len(PICTURES)
-	for text in ("Uniaxial compression of bonded spheres", "of their", "rigid_broken_bonds.csv", "as in ESyS-Particle 2.3.5", "packed by GenGeo", "--threads 2"):
+	for text in (
+		"Uniaxial compression of bonded spheres", "of their", "rigid_broken_bonds.csv",
+		"as in ESyS-Particle 2.3.5", "packed by GenGeo", "--threads 2"
+	):
 		assert text in page
 	body = re.sub(r"base64,[^\"]*|<!-- provenance: .*-->", "", page[page.index("<body>"):])
 	for text in ("deformable", "both models", "each model", "None", "nan"):
@@ -221,7 +259,10 @@ def test_paraview_files(small):
 	assert last["spheres"].GetNumberOfPoints() == figures["particles"]
 	assert last["bonds"].GetNumberOfCells() == figures["bonds"]
 	state = vtk_to_numpy(last["bonds"].GetCellData().GetArray("state"))
-	assert [(state == mode).sum() for mode in (TENSION, SHEAR)] == [figures["broken_in_tension"], figures["broken_in_shear"]]
+	assert [(state == mode).sum() for mode in (TENSION, SHEAR)] == [
+		figures["broken_in_tension"],
+		figures["broken_in_shear"],
+	]
 	broken = broken_bonds.read(folder / "rigid_broken_bonds.csv")
 	stress = vtk_to_numpy(last["broken"].GetPointData().GetArray("normalStress"))
 	np.testing.assert_array_equal(stress, broken["normal_stress"])
@@ -232,9 +273,14 @@ def test_tension_of_a_packing(perform):
 	series, broken = Series.read(folder / "rigid.csv"), broken_bonds.read(folder / "rigid_broken_bonds.csv")
 	assert 5 < figures["tensile_MPa"] < 100  # the bonds have 100
 	assert series["strain"][-1] > 0 and series["force_top"].max() > 0
-	assert (broken["mode"] == "tension").mean() > 0.5 and (broken["normal_stress"][broken["mode"] == "tension"] > 0).all()
+	assert (broken["mode"] == "tension").mean() > 0.5 and (
+		broken["normal_stress"][broken["mode"] == "tension"] > 0
+	).all()
 	page = (folder / "report.html").read_text(encoding="utf-8")
-	for text in ("Uniaxial tension of bonded spheres", "MPa in tension", "tension positive", "moved apart", "tensile strength", "they pull"):
+	for text in (
+		"Uniaxial tension of bonded spheres", "MPa in tension", "tension positive", "moved apart",
+		"tensile strength", "they pull"
+	):
 		assert text in page
 	assert "strength (UCS)" not in page
 
@@ -250,17 +296,25 @@ def test_options_reach_the_model(job, monkeypatch):
 	"""Every parameter of material, walls and damping, as the scene has it."""
 	from yade import O
 	arguments = [
-		"--young", "3e10", "--poisson", "0.1", "--cohesion", "4e7", "--phi", "20", "--tensile-strength", "2e7", "--friction", "0.5", "0.3", "--gradual-friction",
-		"--contact-damping", "0.1", "0.2", "--density", "3000", "--mass-law", "cube", "--wall-stiffness", "7e10", "--bonded-walls", "--wall-shear-stiffness", "5e9",
-		"--viscosity", "3", "--rotational-viscosity", "4", "--dt", "2e-8", "--velocity", "0.3", "--ramp", "1e-6", "--drive", "top"
+		"--young", "3e10", "--poisson", "0.1", "--cohesion", "4e7", "--phi", "20", "--tensile-strength", "2e7",
+		"--friction", "0.5", "0.3", "--gradual-friction",
+		"--contact-damping", "0.1", "0.2", "--density", "3000", "--mass-law", "cube", "--wall-stiffness",
+		"7e10", "--bonded-walls", "--wall-shear-stiffness", "5e9",
+		"--viscosity", "3", "--rotational-viscosity", "4", "--dt", "2e-8", "--velocity", "0.3", "--ramp",
+		"1e-6", "--drive", "top"
 	]
 	monkeypatch.setattr("sys.argv", ["scripts/ucs_bonded.py", *SMALL, *arguments])
 	options, _ = job.read_options()
 	platens, _, _ = job.make(options)
 	bonds = O.materials["bonds"]
-	assert (bonds.young, bonds.poisson, bonds.cohesion, bonds.tensileStrength, bonds.density) == (3e10, 0.1, 4e7, 2e7, 3000)
+	assert (bonds.young, bonds.poisson, bonds.cohesion, bonds.tensileStrength, bonds.density) == (
+		3e10, 0.1, 4e7, 2e7, 3000
+	)
 	assert math.degrees(bonds.bondFrictionAngle) == pytest.approx(20)
-	assert (bonds.frictionStatic, bonds.frictionDynamic, bonds.gradualFriction, bonds.normalDamping, bonds.shearDamping) == (0.5, 0.3, True, 0.1, 0.2)
+	assert (
+		bonds.frictionStatic, bonds.frictionDynamic, bonds.gradualFriction, bonds.normalDamping,
+		bonds.shearDamping
+	) == (0.5, 0.3, True, 0.1, 0.2)
 	sphere = O.bodies[int(platens.sample.ids[0])]
 	assert sphere.state.mass == pytest.approx(3000 * sphere.shape.radius**3)
 	wall = O.bodies[platens.top].mat
@@ -291,7 +345,10 @@ def test_options_reach_the_model(job, monkeypatch):
 	(["--length-unit", "mm"], "--length-unit: it belongs to a file of particles"),
 	(["--particles", "nowhere.csv"], "No such file or directory: 'nowhere.csv'"),
 	(["--particles", "p.csv", "--radii", "1", "2"], "--radii: it belongs to a generated sample"),
-	(["--particles", "p.csv", "--box", "0", "0", "0", "1", "-1", "1"], "--box: its second corner must be above the first"),
+	(
+		["--particles", "p.csv", "--box", "0", "0", "0", "1", "-1", "1"],
+		"--box: its second corner must be above the first",
+	),
 	(["--test", "tension", "--no-bonded-walls"], "--no-bonded-walls: walls that are not bonded only push"),
 	(["--wall-shear-stiffness", "1e9"], "--wall-shear-stiffness: only bonded walls have one"),
 	(["--poisson", "0.7"], "poisson"),

@@ -16,10 +16,17 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 from yade.ddem.series import Series
 
 SCRIPT = os.path.join(os.path.dirname(__file__), "..", "..", "scripts", "ucs_compare.py")
-SMALL = ["--size", "0.025", "--radii", "0.005", "0.01", "--depth", "0.04", "--velocity", "4", "--no-pictures", "--no-vtk", "--no-progress"]
-PICTURES = {"stress_strain", "wall_forces", "damage", "broken_bonds", "energy", "final_damage", "evolution", "rotation", "engines"}
+SMALL = [
+	"--size", "0.025", "--radii", "0.005", "0.01", "--depth", "0.04", "--velocity", "4", "--no-pictures",
+	"--no-vtk", "--no-progress"
+]
+PICTURES = {
+	"stress_strain", "wall_forces", "damage", "broken_bonds", "energy", "final_damage", "evolution", "rotation",
+	"engines"
+}
 FIGURES = {
-	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa", "strain_at_peak", "damage_at_peak", "damage_at_end",
+	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa",
+	"strain_at_peak", "damage_at_peak", "damage_at_end",
 	"energy_error"
 }
 
@@ -30,7 +37,8 @@ def job():
 	spec = importlib.util.spec_from_file_location("ucs_compare", SCRIPT)
 	module = importlib.util.module_from_spec(spec)
 	import yade
-	module.__dict__.update({name: getattr(yade, name) for name in dir(yade) if not name.startswith("_")})  # a YADE script finds these without importing them
+	# a YADE script finds these without importing them
+	module.__dict__.update({name: getattr(yade, name) for name in dir(yade) if not name.startswith("_")})
 	spec.loader.exec_module(module)
 	return module
 
@@ -61,11 +69,15 @@ def test_summary(quick):
 		assert FIGURES <= figures.keys()
 		assert figures["particles"] > 1000 and figures["steps"] > 1000
 		assert figures["peak_passed"]
-		# Plane strain, uniaxial: 53.5 MPa at 1/s at a point of this concrete (Zubelewicz's constants); rough ends confine the block and raise it, the spread of
-		# fracture energies lowers it; at 10/s the concrete carries more. Cylinders of concrete peak at 0.2 to 0.3 % (fib Model Code 2010), less in plane strain.
+		# Plane strain, uniaxial: 53.5 MPa at 1/s at a point of this concrete (Zubelewicz's constants);
+		# rough ends confine the block and raise it, the spread of fracture energies lowers it; at 10/s the
+		# concrete carries more. Cylinders of concrete peak at 0.2 to 0.3 % (fib Model Code 2010),
+		# less in plane strain.
 		assert 50 < figures["ucs_MPa"] < 90, model
-		assert figures["ucs_MPa"] / 62e3 < figures["strain_at_peak"] < 0.004, model  # not stiffer than elastic, see below
-		# Elastic plane strain: E/(1 - ν²) = 62 GPa for B = 30 GPa, μ = 26 GPa; flow before the peak lowers the slope.
+		# not stiffer than elastic, see below
+		assert figures["ucs_MPa"] / 62e3 < figures["strain_at_peak"] < 0.004, model
+		# Elastic plane strain: E/(1 - ν²) = 62 GPa for B = 30 GPa, μ = 26 GPa;
+		# flow before the peak lowers the slope.
 		assert 25 < figures["young_GPa"] < 63, model
 		assert 0 < figures["damage_at_peak"] < figures["damage_at_end"] < 1
 		assert figures["energy_error"] < 0.01
@@ -73,7 +85,9 @@ def test_summary(quick):
 	# both are meant to be the same concrete
 	assert rigid["ucs_MPa"] == pytest.approx(deformable["ucs_MPa"], rel=0.1)
 	assert rigid["young_GPa"] == pytest.approx(deformable["young_GPa"], rel=0.1)
-	assert summary["cost_ratio_deformable_to_rigid"]["wall_s"] == pytest.approx(deformable["wall_s"] / rigid["wall_s"])
+	assert summary["cost_ratio_deformable_to_rigid"]["wall_s"] == pytest.approx(
+		deformable["wall_s"] / rigid["wall_s"]
+	)
 
 
 def test_series(quick):
@@ -91,7 +105,9 @@ def test_page_and_pictures(quick):
 	folder, _ = quick
 	page = (folder / "report.html").read_text(encoding="utf-8")
 	assert page.count("data:image/png;base64,") == len(PICTURES)
-	for text in ("rigid bonded spheres", "deformable triangles", "To run it again", "ucs_compare.py", "What it costs"):
+	for text in (
+		"rigid bonded spheres", "deformable triangles", "To run it again", "ucs_compare.py", "What it costs"
+	):
 		assert text in page
 	for name in PICTURES:
 		with open(folder / f"{name}.png", "rb") as file:
@@ -123,13 +139,18 @@ def test_same_seed_gives_the_same_result(job, monkeypatch, tmp_path):
 	for name, seed in (("one", 3), ("two", 3), ("three", 4)):
 		run(job, monkeypatch, *SMALL, "--seed", str(seed), "--out", str(tmp_path / name))
 	for model in ("rigid", "deformable"):
-		one, two, three = (origins.numbers(tmp_path / name / f"{model}.csv") for name in ("one", "two", "three"))
+		one, two, three = (
+			origins.numbers(tmp_path / name / f"{model}.csv") for name in ("one", "two", "three")
+		)
 		assert one == two
 		assert one != three
 
 
 def test_one_model_and_its_options(job, monkeypatch, tmp_path):
-	arguments = ["--models", "deformable", "--rebar", "--mesh", "crossed", "--size", "0.01", "--rotation", "none", "--ends", "smooth", "--drive", "top", "--strain", "0.001"]
+	arguments = [
+		"--models", "deformable", "--rebar", "--mesh", "crossed", "--size", "0.01", "--rotation", "none",
+		"--ends", "smooth", "--drive", "top", "--strain", "0.001"
+	]
 	run(job, monkeypatch, *SMALL, *arguments, "--out", str(tmp_path))
 	with open(tmp_path / "summary.json") as file:
 		summary = json.load(file)

@@ -5,8 +5,8 @@ import pytest
 
 from deformable_samples import agitate, elastic, skewed_mesh, start, steps
 from yade import (
-	ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceEngine, ForceResetter, GlobalStiffnessTimeStepper,
-	Matrix3, NewtonIntegrator, O, ddem
+	ConcreteDamageMat, DeformableEngine, DeformableTimeStepper, ForceEngine, ForceResetter,
+	GlobalStiffnessTimeStepper, Matrix3, NewtonIntegrator, O, ddem
 )
 
 
@@ -20,7 +20,9 @@ def fall_of(block, count):
 	return block.displacements[:, 1], -9.81 * O.dt**2 * count * (count + 1) / 2
 
 
-@pytest.mark.parametrize("own, newton", (((0, 0, 0), (0, -9.81, 0)), ((0, -9.81, 0), (0, 0, 0)), ((0, -9.81, 0), (0, -9.81, 0))))
+@pytest.mark.parametrize(
+	"own, newton", (((0, 0, 0), (0, -9.81, 0)), ((0, -9.81, 0), (0, 0, 0)), ((0, -9.81, 0), (0, -9.81, 0)))
+)
 def test_gravity_acts_once_wherever_it_is_said(own, newton):
 	block = block_of()
 	start(gravity=own)
@@ -139,7 +141,11 @@ def test_a_triangle_inside_out_stops_the_run():
 	at = int(block.mesh.triangles[4, 0])
 	centre = block.mesh.nodes[block.mesh.triangles[4]].mean(axis=0)
 	body = O.bodies[block.node_ids[at]]
-	place = 2 * centre - np.array([body.state.pos[0], body.state.pos[1]]) + 0.2 * (centre - np.array([body.state.pos[0], body.state.pos[1]]))
+	place = (
+		2 * centre
+		- np.array([body.state.pos[0], body.state.pos[1]])
+		+ 0.2 * (centre - np.array([body.state.pos[0], body.state.pos[1]]))
+	)
 	body.state.pos = (place[0], place[1], 0)
 	O.dt = 0.1 * O.dt  # to be looked at at once
 	with pytest.raises(RuntimeError, match=r"triangle body \d+ at .* is inside out in step 3.*area is -"):
@@ -178,7 +184,8 @@ def test_a_scene_of_0_1_0_is_a_clear_error(tmp_path):
 	O.save(str(path))
 	text = path.read_text()
 	assert "<savedVersion>3</savedVersion>" in text
-	path.write_text(text.replace("<savedVersion>3</savedVersion>", "<savedVersion>2</savedVersion>"))  # as 0.1.0 wrote it
+	# as 0.1.0 wrote it
+	path.write_text(text.replace("<savedVersion>3</savedVersion>", "<savedVersion>2</savedVersion>"))
 	O.load(str(path))
 	with pytest.raises(RuntimeError, match="version 2 .*0.1.0.*load it with the plugin that saved it"):
 		O.step()
@@ -214,7 +221,8 @@ def test_reading_one_triangle_takes_up_what_was_changed_there_only():
 	assert block.stress[0, 0, 0] == pytest.approx(stretched, rel=1e-12)
 	far = O.bodies[[i for i in block.node_ids if i not in tuple(body.shape.nodes)][-1]]
 	far.state.pos = (float("nan"), 0, 0)
-	assert body.shape.stress[0][0, 0] == stretched  # nobody else is looked at, so it costs the same in a sample of any size
+	# nobody else is looked at, so it costs the same in a sample of any size
+	assert body.shape.stress[0][0, 0] == stretched
 	with pytest.raises(ValueError, match=f"body {far.id} .*not finite"):
 		block.stress
 

@@ -18,7 +18,11 @@ KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed"
 
 
 @pytest.mark.parametrize(
-	"case", [pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow or case.needs else []) for case in verification.all_cases()]
+	"case",
+	[
+		pytest.param(case, id=case.name, marks=[pytest.mark.slow] if case.slow or case.needs else [])
+		for case in verification.all_cases()
+	]
 )
 def test_case(case):
 	result = verification.run(case, pictures=True)
@@ -72,7 +76,11 @@ def test_errors_are_relative_to_the_reference_or_the_scale():
 	assert second.error == pytest.approx(5e-4)
 	assert result.passed
 	assert not verification.run(made(right), shift=0.01).passed
-	assert result.case.text == [("", "Some text over two lines.", False), ("", "σ = E ε", True), ("Reference", "a book.", False)]
+	assert result.case.text == [
+		("", "Some text over two lines.", False),
+		("", "σ = E ε", True),
+		("Reference", "a book.", False),
+	]
 
 
 @pytest.mark.parametrize("function, count", [(wrong, 2), (broken, 1), (silent, 0)])
@@ -110,10 +118,14 @@ def test_every_case_explains_itself():
 
 
 def test_page_holds_everything(tmp_path):
-	results = [verification.run(made(function), pictures=True) for function in (right, wrong, broken)] + [verification.run("settling", pictures=True)]
+	results = [verification.run(made(function), pictures=True) for function in (right, wrong, broken)] + [
+		verification.run("settling", pictures=True)
+	]
 	path = page.write(results, str(tmp_path / "new"), "run it --so", {"YADE": "1"})
 	text = open(path, encoding="utf-8").read()
-	for expected in ("3 of 11 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"):
+	for expected in (
+		"3 of 11 checks failed", "run it --so", "A title", "σ = E ε", "no such luck", "0.001", "ruler", "–"
+	):
 		assert expected in text, expected
 	assert "σ<sub>yy</sub>" in text
 	assert text.count("data:image/png;base64,") == 2
@@ -185,17 +197,25 @@ def test_a_case_named_twice_runs_once(verify):
 
 @pytest.mark.parametrize("tension, limit, jump", [(False, 30, 0.012), (True, 10, 0.001)])
 def test_model_code_branches_meet(tension, limit, jump):
-	"""The factors 0.012 and 0.0062 of the code are rounded: at 30 and 10 /s its branches give 1.2134 and 1.2, 1.3366 and 1.3357."""
+	"""The factors 0.012 and 0.0062 of the code are rounded: at 30 and 10 /s its branches give 1.2134 and
+	1.2, 1.3366 and 1.3357."""
 	below, above = concrete_theory.fib_factor(np.array([limit, limit * (1 + 1e-9)]), tension)
 	assert 0 < 1 - above / below < jump
 	assert concrete_theory.fib_factor(concrete_theory.FIB_STATIC[tension], tension) == pytest.approx(1)
 
 
 def test_biaxial_tests():
-	assert concrete_theory.kupfer(np.array([0, 0.52, 1])) == pytest.approx([1, 1.254, 1.1625], abs=5e-4)  # 1.16 at equal stresses: Kupfer et al. (1969)
+	# 1.16 at equal stresses: Kupfer et al. (1969)
+	assert concrete_theory.kupfer(np.array([0, 0.52, 1])) == pytest.approx([1, 1.254, 1.1625], abs=5e-4)
 
 
-@pytest.mark.parametrize("name, change", [("strength", 1.01), ("friction", 1.01), ("fractureEnergy", 1.01), ("closedGrowth", 1.02), ("rateExponent", 1.001)])
+@pytest.mark.parametrize(
+	"name, change",
+	[
+		("strength", 1.01), ("friction", 1.01), ("fractureEnergy", 1.01), ("closedGrowth", 1.02),
+		("rateExponent", 1.001)
+	],
+)
 def test_curves_tell_a_wrong_law(name, change):
 	"""A parameter that is off by one per cent shows in a curve by far more than the tolerance of the case."""
 	parameters = concrete()
@@ -206,8 +226,13 @@ def test_curves_tell_a_wrong_law(name, change):
 
 @pytest.mark.parametrize(
 	"text, html", [
-		("σ_xx and c_R", "σ<sub>xx</sub> and c<sub>R</sub>"), ("N_Ω, ė_N, M_p ė_eq", "N<sub>Ω</sub>, ė<sub>N</sub>, M<sub>p</sub> ė<sub>eq</sub>"),
-		("(ė_N/ė_0)^ω_p)^(1/n_p)", "(ė<sub>N</sub>/ė<sub>0</sub>)<sup>ω<sub>p</sub></sup>)<sup>1/n<sub>p</sub></sup>"), ("x^0.014, e^{ikx}.", "x<sup>0.014</sup>, e<sup>ikx</sup>."),
+		("σ_xx and c_R", "σ<sub>xx</sub> and c<sub>R</sub>"),
+		("N_Ω, ė_N, M_p ė_eq", "N<sub>Ω</sub>, ė<sub>N</sub>, M<sub>p</sub> ė<sub>eq</sub>"),
+		(
+			"(ė_N/ė_0)^ω_p)^(1/n_p)",
+			"(ė<sub>N</sub>/ė<sub>0</sub>)<sup>ω<sub>p</sub></sup>)<sup>1/n<sub>p</sub></sup>",
+		),
+		("x^0.014, e^{ikx}.", "x<sup>0.014</sup>, e<sup>ikx</sup>."),
 		("ddem.time_step and a < b", "ddem.time_step and a &lt; b")
 	]
 )

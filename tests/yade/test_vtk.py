@@ -21,12 +21,22 @@ def read(path):
 	reader.Update()
 	grid = reader.GetOutput()
 	count = grid.GetNumberOfCells()
-	cells = vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(count, -1) if count else np.zeros((0, 0), int)
+	cells = (
+		vtk_to_numpy(grid.GetCells().GetConnectivityArray()).reshape(count, -1)
+		if count
+		else np.zeros((0, 0), int)
+	)
 	kinds = {grid.GetCellType(i) for i in range(count)}
 	assert len(kinds) <= 1
-	arrays = [{data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())} for data in (grid.GetPointData(), grid.GetCellData())]
+	arrays = [
+		{data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+		for data in (grid.GetPointData(), grid.GetCellData())
+	]
 	points = vtk_to_numpy(grid.GetPoints().GetData()) if grid.GetNumberOfPoints() else np.zeros((0, 3))
-	return points, cells, kinds.pop() if kinds else None, *arrays, vtk_to_numpy(grid.GetFieldData().GetArray("TimeValue"))[0], grid
+	return (
+		points, cells, kinds.pop() if kinds else None, *arrays,
+		vtk_to_numpy(grid.GetFieldData().GetArray("TimeValue"))[0], grid
+	)
 
 
 def collection(path):
@@ -79,7 +89,9 @@ def test_triangles_are_those_of_the_scene(block, tmp_path):
 	assert cell["stress"][7] == pytest.approx([mean[0, 0], mean[1, 1], mean[2, 2], mean[0, 1], 0, 0], rel=1e-12)
 	assert abs(mean[0, 1]) > 1e3
 	strain = sum(np.array(tensor) for tensor in body.shape.strain) / 3
-	assert cell["strain"][7] == pytest.approx([strain[0, 0], strain[1, 1], strain[2, 2], strain[0, 1], 0, 0], rel=1e-12)
+	assert cell["strain"][7] == pytest.approx(
+		[strain[0, 0], strain[1, 1], strain[2, 2], strain[0, 1], 0, 0], rel=1e-12
+	)
 
 	undamaged = read(entries[0][1])
 	assert np.abs(undamaged[4]["stress"]).max() < 1  # Pa: round-off of 30 GPa
@@ -102,17 +114,25 @@ def test_sub_elements_have_their_own_cells(block, tmp_path):
 		assert cells[row, 1:].tolist() == [block.mesh.triangles[row // 3][(row % 3 + i) % 3] for i in (0, 1)]
 		a, b, c = points[cells[row], :2]
 		assert np.cross([*(b - a), 0], [*(c - a), 0])[2] > 0
-	np.testing.assert_allclose(points[:, :2] - point["displacement"][:, :2], np.vstack([block.reference_positions, block.mesh.centroids]), atol=1e-15)
+	np.testing.assert_allclose(
+		points[:, :2] - point["displacement"][:, :2],
+		np.vstack([block.reference_positions, block.mesh.centroids]),
+		atol=1e-15,
+	)
 
 
 def test_recorder_in_a_run_replaces_an_older_recording(block, tmp_path):
-	for name in ("block-0000.vtu", "block-0007.vtu", "block-12345.vtu", "block.pvd", "block-notes.vtu", "other-0001.vtu"):
+	for name in (
+		"block-0000.vtu", "block-0007.vtu", "block-12345.vtu", "block.pvd", "block-notes.vtu", "other-0001.vtu"
+	):
 		(tmp_path / name).write_text("old")
 	import __main__
 	__main__.record = vtk.Recorder(block, str(tmp_path / "block"))
 	O.engines = O.engines + [PyRunner(command="record()", iterPeriod=10)]
 	O.run(31, True)
-	assert sorted(os.listdir(tmp_path)) == ["block-0000.vtu", "block-0001.vtu", "block-0002.vtu", "block-notes.vtu", "block.pvd", "other-0001.vtu"]
+	assert sorted(os.listdir(tmp_path)) == [
+		"block-0000.vtu", "block-0001.vtu", "block-0002.vtu", "block-notes.vtu", "block.pvd", "other-0001.vtu"
+	]
 	times = [time for time, _ in collection(tmp_path / "block.pvd")]
 	assert times == pytest.approx([10 * O.dt, 20 * O.dt, 30 * O.dt])
 	del __main__.record
@@ -153,7 +173,11 @@ def test_spheres_bonds_and_broken_bonds(spheres, tmp_path):
 	record()
 	broken = spheres.broken
 	assert len(broken) == 1
-	assert sorted(os.path.basename(path) for path in record.files) == ["row-bonds.pvd", "row-broken.pvd", "row-spheres.pvd"]
+	assert sorted(os.path.basename(path) for path in record.files) == [
+		"row-bonds.pvd",
+		"row-broken.pvd",
+		"row-spheres.pvd",
+	]
 
 	points, cells, kind, point, _, time, _ = read(tmp_path / "row-spheres-0001.vtu")
 	assert (kind, len(cells), time) == (VTK_VERTEX, 10, O.time)
@@ -174,11 +198,14 @@ def test_spheres_bonds_and_broken_bonds(spheres, tmp_path):
 	assert bond["radius"] == pytest.approx(1e-3)
 	for row, (i, j) in enumerate(cells[:-1]):
 		phys = O.interactions[int(spheres.ids[i]), int(spheres.ids[j])].phys
-		along = (spheres.positions[j] - spheres.positions[i]) / np.linalg.norm(spheres.positions[j] - spheres.positions[i])
+		along = (spheres.positions[j] - spheres.positions[i]) / np.linalg.norm(
+			spheres.positions[j] - spheres.positions[i]
+		)
 		assert bond["axialForce"][row] == pytest.approx(-np.dot(phys.normalForce, along), rel=1e-12)
 		assert bond["shearForce"][row] == pytest.approx(phys.shearForce.norm())
 		assert bond["normalStress"][row] == phys.normalStress
-	assert bond["axialForce"][3] > 0 and bond["axialForce"][4] > 0  # tension is positive: the spheres in the middle are held back by their neighbours
+	# tension is positive: the spheres in the middle are held back by their neighbours
+	assert bond["axialForce"][3] > 0 and bond["axialForce"][4] > 0
 	assert np.isnan(bond["axialForce"][-1])
 	assert bond["normalStress"][-1] == broken["normal_stress"][0] > 10e6
 

@@ -18,26 +18,46 @@ def arrays(nodes, triangles, regions, region_names):
 		raise ValueError(f"node {index} is at {point(nodes[index])}: coordinates must be finite numbers")
 	indices = np.array(triangles)
 	if indices.ndim != 2 or indices.shape[1] != 3 or indices.dtype.kind not in "iu":
-		raise ValueError(f"triangles must be (m, 3) integer node indices, not {indices.dtype} of shape {indices.shape}")
+		raise ValueError(
+			f"triangles must be (m, 3) integer node indices, not {indices.dtype} of shape {indices.shape}"
+		)
 	if len(indices) == 0:
 		raise ValueError("a mesh needs at least one triangle")
 	if indices.min() < 0 or indices.max() >= len(nodes):
 		triangle = int(np.flatnonzero((indices < 0).any(axis=1) | (indices >= len(nodes)).any(axis=1))[0])
-		raise ValueError(f"triangle {triangle} has nodes {tuple(indices[triangle].tolist())}, but nodes are numbered from 0 to {len(nodes) - 1}")
+		raise ValueError(
+			f"triangle {triangle} has nodes {tuple(indices[triangle].tolist())}, but nodes are numbered "
+			f"from 0 to {len(nodes) - 1}"
+		)
 	names = tuple(region_names)
-	if not names or names[0] != "" or len(set(names)) != len(names) or not all(isinstance(name, str) for name in names):
-		raise ValueError(f"region_names must be different strings, the first of them \"\" (the default region), not {names!r}")
+	if (
+		not names
+		or names[0] != ""
+		or len(set(names)) != len(names)
+		or not all(isinstance(name, str) for name in names)
+	):
+		raise ValueError(
+			"region_names must be different strings, the first of them \"\" (the default region), not "
+			f"{names!r}"
+		)
 	numbers = np.zeros(len(indices), dtype=np.int32) if regions is None else np.array(regions)
 	if numbers.shape != (len(indices),) or numbers.dtype.kind not in "iu":
-		raise ValueError(f"regions must be one integer a triangle ({len(indices)}), not {numbers.dtype} of shape {numbers.shape}")
+		raise ValueError(
+			f"regions must be one integer a triangle ({len(indices)}), not {numbers.dtype} of shape "
+			f"{numbers.shape}"
+		)
 	if numbers.min() < 0 or numbers.max() >= len(names):
 		triangle = int(np.flatnonzero((numbers < 0) | (numbers >= len(names)))[0])
-		raise ValueError(f"triangle {triangle} is in region {numbers[triangle]}, but region_names has {len(names)} names: {names!r}")
+		raise ValueError(
+			f"triangle {triangle} is in region {numbers[triangle]}, but region_names has {len(names)} "
+			f"names: {names!r}"
+		)
 	return nodes, indices.astype(np.int32), numbers.astype(np.int32), names
 
 
 def geometry(mesh):
-	"""Raise ValueError unless the mesh is a proper triangulation: positive triangles that meet only in whole edges and in nodes."""
+	"""Raise ValueError unless the mesh is a proper triangulation:
+	positive triangles that meet only in whole edges and in nodes."""
 	_degenerate(mesh)
 	_clockwise(mesh)
 	_duplicates(mesh)
@@ -49,15 +69,17 @@ def geometry(mesh):
 def _degenerate(mesh):
 	flat = np.flatnonzero(mesh.heights <= _FLAT * mesh.edge_lengths.max(axis=1))
 	if len(flat):
-		raise ValueError(f"{_triangle(mesh, flat[0])} has no area{_more(flat)}; remove it, or move one of its nodes")
+		raise ValueError(
+			f"{_triangle(mesh, flat[0])} has no area{_more(flat)}; remove it, or move one of its nodes"
+		)
 
 
 def _clockwise(mesh):
 	turned = np.flatnonzero(mesh.areas < 0)
 	if len(turned):
 		raise ValueError(
-			f"{_triangle(mesh, turned[0])} is clockwise{_more(turned)}; triangles must be counter-clockwise: use mesh.flipped(), or make "
-			"or read it with orient=True"
+			f"{_triangle(mesh, turned[0])} is clockwise{_more(turned)}; triangles must be "
+			"counter-clockwise: use mesh.flipped(), or make or read it with orient=True"
 		)
 
 
@@ -66,7 +88,8 @@ def _duplicates(mesh):
 	again = np.flatnonzero(first[inverse.reshape(-1)] != np.arange(len(mesh.triangles)))
 	if len(again):
 		raise ValueError(
-			f"{_triangle(mesh, again[0])} is the same as triangle {first[inverse.reshape(-1)[again[0]]]}{_more(again)}; remove one of them"
+			f"{_triangle(mesh, again[0])} is the same as triangle "
+			f"{first[inverse.reshape(-1)[again[0]]]}{_more(again)}; remove one of them"
 		)
 
 
@@ -113,7 +136,9 @@ def _overlaps(mesh):
 			f"{_triangle(mesh, second)} without being "
 			"one of its nodes; the two are not joined: split that triangle at the node"
 		)
-	raise ValueError(f"{_triangle(mesh, first)} overlaps {_triangle(mesh, second)}; remove one of them or move its nodes")
+	raise ValueError(
+		f"{_triangle(mesh, first)} overlaps {_triangle(mesh, second)}; remove one of them or move its nodes"
+	)
 
 
 def point(position):

@@ -14,7 +14,8 @@ from .. import provenance
 from . import abaqus
 from .triangles import Mesh
 
-_REGION = "region"  # cell array with the region's number; "region:NAME" marks the triangles of one region, for formats without names
+# cell array with the region's number; "region:NAME" marks the triangles of one region, for formats without names
+_REGION = "region"
 _MATERIALS = ("medit:ref", "nastran:ref", "avsucd:material")  # meshio's cell arrays of numbers of materials
 _NUMBERED = ("gmsh:physical", _REGION + ":", *_MATERIALS)
 
@@ -51,10 +52,16 @@ def read(path, orient=False, length_unit="m", regions=None):
 		groups = _groups(data, blocks, len(triangles))
 
 	if len(triangles) == 0:
-		raise ValueError(f"{path!r} has no triangles (in Gmsh: generate the 2D mesh, and put the surface in a physical group or set Mesh.SaveAll)")
+		raise ValueError(
+			f"{path!r} has no triangles (in Gmsh: generate the 2D mesh, and put the surface in a physical "
+			"group or set Mesh.SaveAll)"
+		)
 	planar = _plane(points * unit, path)
 	if triangles.min() < 0 or triangles.max() >= len(planar):
-		raise ValueError(f"{path!r} has a triangle with node {triangles.max()}, but only {len(planar)} nodes; the file is damaged")
+		raise ValueError(
+			f"{path!r} has a triangle with node {triangles.max()}, but only {len(planar)} nodes; the file "
+			"is damaged"
+		)
 	used, renumbered = np.unique(triangles, return_inverse=True)
 	try:
 		numbers, names = _regions(groups, preferred, len(triangles), regions)
@@ -74,10 +81,21 @@ def write(mesh, path):
 		# Number 0 is "in no physical group". Version 2.2 is what every reader of Gmsh files understands.
 		numbers = {"gmsh:physical": [mesh.regions], "gmsh:geometrical": [mesh.regions + 1]}
 		names = {name: np.array([i, 2]) for i, name in enumerate(mesh.region_names) if name}
-		meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.triangles)], cell_data=numbers, field_data=names), file_format="gmsh22", binary=False)
+		meshio.write(
+			path,
+			meshio.Mesh(nodes, [("triangle", mesh.triangles)], cell_data=numbers, field_data=names),
+			file_format="gmsh22",
+			binary=False,
+		)
 		return
 	arrays = {_REGION: [mesh.regions]}
-	arrays.update({f"{_REGION}:{_escaped(name)}": [(mesh.regions == i).astype(np.int32)] for i, name in enumerate(mesh.region_names) if name})
+	arrays.update(
+		{
+			f"{_REGION}:{_escaped(name)}": [(mesh.regions == i).astype(np.int32)]
+			for i, name in enumerate(mesh.region_names)
+			if name
+		}
+	)
 	try:
 		meshio.write(path, meshio.Mesh(nodes, [("triangle", mesh.triangles)], cell_data=arrays))
 	except (meshio.ReadError, meshio.WriteError) as error:
@@ -99,7 +117,10 @@ def _read_with_meshio(path):
 		reason = " ".join(said.getvalue().split())
 	except Exception as error:  # whatever the reader of a damaged file stumbles over
 		reason = f"{type(error).__name__}: {error}"
-	raise ValueError(f"cannot read mesh file {path!r}; it is truncated, damaged or of another kind ({_xml_error(path) or reason})")
+	raise ValueError(
+		f"cannot read mesh file {path!r}; it is truncated, damaged or of another kind "
+		f"({_xml_error(path) or reason})"
+	)
 
 
 def _xml_error(path):
@@ -113,7 +134,8 @@ def _xml_error(path):
 
 
 def _check_gmsh_text(path):
-	"""Find the line where a Gmsh text file is cut off or not a number; meshio does not say it, and may read such a file without complaint."""
+	"""Find the line where a Gmsh text file is cut off or not a number; meshio does not say it,
+	and may read such a file without complaint."""
 	with open(path, "rb") as file:
 		text = file.read()
 	header = re.match(rb"\s*\$MeshFormat\s+(\S+)\s+([01])\s", text)
@@ -125,33 +147,37 @@ def _check_gmsh_text(path):
 		if not line.group(1):
 			if section:
 				raise ValueError(
-					f"{path!r}, line {number}: ${line.group(2).decode()} begins before ${section} of line {opened} has ended; the "
-					"file is damaged"
+					f"{path!r}, line {number}: ${line.group(2).decode()} begins before ${section} "
+					f"of line {opened} has ended; the file is damaged"
 				)
 			section, start, opened = line.group(2).decode(), line.end(), number
 			continue
 		if section != line.group(2).decode():
 			raise ValueError(
-				f"{path!r}, line {number}: $End{line.group(2).decode()} does not end {'$' + section if section else 'any section'}; "
-				"the file is damaged"
+				f"{path!r}, line {number}: $End{line.group(2).decode()} does not end "
+				f"{'$' + section if section else 'any section'}; the file is damaged"
 			)
 		if section in ("Nodes", "Elements", "Entities"):
 			strange = re.search(rb"[^\s0-9eE.+-]\S*", text[start:line.start()])
 			if strange:
 				number = 1 + text.count(b"\n", 0, start + strange.start())
-				raise ValueError(f"{path!r}, line {number}: {strange.group().decode(errors='replace')!r} in ${section} is not a number")
+				raise ValueError(
+					f"{path!r}, line {number}: {strange.group().decode(errors='replace')!r} in "
+					f"${section} is not a number"
+				)
 		if section in ("Nodes", "Elements") and header.group(1).startswith(b"2"):
 			rows = text[start:line.start()].split(b"\n")[1:]
 			rows = [row for row in rows if row.strip()]
 			if rows and rows[0].strip().isdigit() and int(rows[0]) != len(rows) - 1:
 				raise ValueError(
-					f"{path!r}, line {opened + 1}: ${section} announces {int(rows[0])} lines, but {len(rows) - 1} follow; the "
-					"file is damaged"
+					f"{path!r}, line {opened + 1}: ${section} announces {int(rows[0])} lines, but "
+					f"{len(rows) - 1} follow; the file is damaged"
 				)
 		section = None
 	if section:
 		raise ValueError(
-			f"{path!r}, line {1 + text.count(bytes([10]))}: the file ends within ${section}, which began in line {opened}; it is truncated"
+			f"{path!r}, line {1 + text.count(bytes([10]))}: the file ends within ${section}, which began "
+			f"in line {opened}; it is truncated"
 		)
 
 
@@ -162,7 +188,11 @@ def _plane(points, path):
 	if flat[2]:
 		return points[:, :2]
 	low, high = points[:, 2].min(), points[:, 2].max()
-	axis = "the mesh lies in another plane: exchange its coordinates" if flat.any() else "only plane meshes can be used"
+	axis = (
+		"the mesh lies in another plane: exchange its coordinates"
+		if flat.any()
+		else "only plane meshes can be used"
+	)
 	raise ValueError(f"{path!r} is not in the x-y plane: z goes from {low:g} to {high:g} m; {axis}")
 
 

@@ -37,7 +37,10 @@ def ring(corners, name):
 		raise ValueError(f"{name}: needs a list of corners (x, y) [m]")
 	if not np.isfinite(points).all():
 		index = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
-		raise ValueError(f"{name}: corner {index} is ({points[index, 0]}, {points[index, 1]}) m; coordinates must be finite numbers")
+		raise ValueError(
+			f"{name}: corner {index} is ({points[index, 0]}, {points[index, 1]}) m; coordinates must be "
+			"finite numbers"
+		)
 	if len(points) > 1 and (points[0] == points[-1]).all():
 		points = points[:-1]
 	if len(points) < 3:
@@ -64,7 +67,8 @@ def inside(points, corners):
 
 
 def distance(points, a, b):
-	"""Distance [m] of each point from each segment a[j]–b[j], and how far along it (0 to 1) the nearest place is: two (points, segments) arrays."""
+	"""Distance [m] of each point from each segment a[j]–b[j], and how far along it (0 to 1) the nearest place is:
+	two (points, segments) arrays."""
 	edge = b - a
 	along = np.clip(((points[:, None] - a) * edge).sum(axis=2) / (edge**2).sum(axis=1), 0, 1)
 	return np.linalg.norm(points[:, None] - a - along[:, :, None] * edge, axis=2), along
@@ -72,7 +76,8 @@ def distance(points, a, b):
 
 @dataclass
 class Rings:
-	"""An outline, its holes and its regions as one planar graph: corners shared, edges split where another polygon's corner lies on them."""
+	"""An outline, its holes and its regions as one planar graph:
+	corners shared, edges split where another polygon's corner lies on them."""
 	names: list  # of each ring, for messages: "outline", "hole 0", "region 'steel'"
 	points: np.ndarray  # (p, 2) [m]
 	chains: list  # of each ring, its closed sequence of point indices
@@ -80,8 +85,13 @@ class Rings:
 
 	@classmethod
 	def assemble(cls, outline, holes, regions):
-		"""Raise ValueError, naming the polygon and the place, unless holes and regions fit in the outline and no borders cross."""
-		names = ["outline"] + [f"hole {i}" for i in range(len(holes))] + [f"region {name!r}" for name in regions]
+		"""Raise ValueError, naming the polygon and the place, unless holes and regions fit in the outline
+		and no borders cross."""
+		names = (
+			["outline"]
+			+ [f"hole {i}" for i in range(len(holes))]
+			+ [f"region {name!r}" for name in regions]
+		)
 		shapes = [ring(corners, name) for corners, name in zip([outline, *holes, *regions.values()], names)]
 		rings = cls(names, *_join(shapes, names), len(holes))
 		rings._check_crossings()
@@ -90,11 +100,14 @@ class Rings:
 
 	def segments(self):
 		"""(s, 2) point indices of all edges, each once."""
-		return np.unique(np.sort(np.vstack([_edges(chain) for chain in self.chains]), axis=1), axis=0).astype(np.int32)
+		return np.unique(np.sort(np.vstack([_edges(chain) for chain in self.chains]), axis=1), axis=0).astype(
+			np.int32
+		)
 
 	def _check_crossings(self):
 		owned = [(i, edge) for i, chain in enumerate(self.chains) for edge in _edges(chain)]
-		_, kept = np.unique([np.sort(edge) for _, edge in owned], axis=0, return_index=True)  # an edge that two rings share is no crossing
+		# an edge that two rings share is no crossing
+		_, kept = np.unique([np.sort(edge) for _, edge in owned], axis=0, return_index=True)
 		owned = [owned[k] for k in np.sort(kept)]
 		crossing = _mesh.firstCrossing(self.points, np.array([edge for _, edge in owned], dtype=np.int32))
 		if crossing is None:
@@ -103,7 +116,9 @@ class Rings:
 		at = f"({crossing[2]:.6g}, {crossing[3]:.6g}) m"
 		if first == second:
 			raise ValueError(f"{first} crosses itself at {at}; give its corners in order along the border")
-		raise ValueError(f"{first} and {second} cross at {at}; move or cut one of them so that their borders only touch")
+		raise ValueError(
+			f"{first} and {second} cross at {at}; move or cut one of them so that their borders only touch"
+		)
 
 	def _check_places(self):
 		outline, shapes = self.points[self.chains[0]], [self.points[chain] for chain in self.chains]
@@ -112,8 +127,9 @@ class Rings:
 			for point in self.chains[i]:
 				if int(point) in taken:
 					raise ValueError(
-						f"{self.names[i]} touches {taken[int(point)]} at ({self.points[point, 0]:.6g}, "
-						f"{self.points[point, 1]:.6g}) m; make it part of that one, or move it"
+						f"{self.names[i]} touches {taken[int(point)]} at "
+						f"({self.points[point, 0]:.6g}, {self.points[point, 1]:.6g}) m; "
+						"make it part of that one, or move it"
 					)
 			taken.update({int(point): self.names[i] for point in self.chains[i]})
 		for i in range(1, len(self.chains)):
@@ -127,9 +143,11 @@ class Rings:
 				if wrong.any():
 					x, y = middles[np.flatnonzero(wrong)[0]]
 					raise ValueError(
-						f"{self.names[i]} lies {'outside of the outline' if j == 0 else 'in ' + self.names[j]} at ({x:.6g}, "
-						f"{y:.6g}) m; the outline spans ({outline[:, 0].min():.6g}, {outline[:, 1].min():.6g}) to "
-						f"({outline[:, 0].max():.6g}, {outline[:, 1].max():.6g}) m"
+						f"{self.names[i]} lies "
+						f"{'outside of the outline' if j == 0 else 'in ' + self.names[j]} at "
+						f"({x:.6g}, {y:.6g}) m; the outline spans ({outline[:, 0].min():.6g}, "
+						f"{outline[:, 1].min():.6g}) to ({outline[:, 0].max():.6g}, "
+						f"{outline[:, 1].max():.6g}) m"
 					)
 
 
@@ -143,7 +161,8 @@ def _shared(edges, others):
 
 
 def _join(shapes, names):
-	# Common points first (the first polygon's position counts, so the outline's), then edges split where a corner of another ring lies on them.
+	# Common points first (the first polygon's position counts, so the outline's), then edges split where a corner
+	# of another ring lies on them.
 	from scipy.spatial import cKDTree  # slow to import
 	near = _SNAP * np.ptp(shapes[0], axis=0).max()
 	corners = np.vstack(shapes)
@@ -156,7 +175,10 @@ def _join(shapes, names):
 		again = np.setdiff1d(np.arange(len(chain)), np.unique(chain, return_index=True)[1])
 		if len(again):
 			x, y = points[chain[again[0]]]
-			raise ValueError(f"{name} touches itself at corner {again[0]}, ({x:.6g}, {y:.6g}) m; each corner must occur once")
+			raise ValueError(
+				f"{name} touches itself at corner {again[0]}, ({x:.6g}, {y:.6g}) m; each corner must "
+				"occur once"
+			)
 	tree = cKDTree(points)
 	return points, [_split(points, tree, chain, name, near) for chain, name in zip(chains, names)]
 
@@ -174,6 +196,9 @@ def _split(points, tree, chain, name, near):
 		touching = gap[:, 0] <= near
 		on = others[touching]
 		for own in np.intersect1d(on, chain):
-			raise ValueError(f"{name} touches itself at ({points[own, 0]:.6g}, {points[own, 1]:.6g}) m; its border must not meet itself")
+			raise ValueError(
+				f"{name} touches itself at ({points[own, 0]:.6g}, {points[own, 1]:.6g}) m; its border "
+				"must not meet itself"
+			)
 		result.extend(on[np.argsort(along[touching, 0])])
 	return np.array(result, dtype=np.int32)

@@ -30,7 +30,11 @@ class Quality:
 	def of(cls, mesh):
 		aspect = np.sqrt(0.75) * mesh.edge_lengths.max(axis=1) / mesh.heights
 		edges = np.linalg.norm(np.diff(mesh.nodes[mesh.edges], axis=1)[:, 0], axis=1)
-		sharpest, widest, ruling = _first_smallest(mesh.angles.min(axis=1)), _first_smallest(1 / aspect), _first_smallest(mesh.heights)
+		sharpest, widest, ruling = (
+			_first_smallest(mesh.angles.min(axis=1)),
+			_first_smallest(1 / aspect),
+			_first_smallest(mesh.heights),
+		)
 		return cls(
 			nodes=len(mesh.nodes),
 			triangles=len(mesh.triangles),
@@ -48,7 +52,10 @@ class Quality:
 			smallest_height=float(mesh.heights[ruling]),
 			ruling_triangle=ruling,
 			regions={
-				name: (int(np.count_nonzero(mesh.regions == i)), float(mesh.areas[mesh.regions == i].sum()))
+				name: (
+					int(np.count_nonzero(mesh.regions == i)),
+					float(mesh.areas[mesh.regions == i].sum()),
+				)
 				for i, name in enumerate(mesh.region_names)
 			},
 			_places={t: mesh.centroids[t] for t in (sharpest, widest, ruling)},
@@ -62,15 +69,26 @@ class Quality:
 
 		rows = [
 			("size", f"{self.nodes} nodes, {self.triangles} triangles, {self.area:.6g} m²"),
-			("angles", f"{self.smallest_angle:.1f}° … {self.largest_angle:.1f}°, smallest in {at(self.smallest_angle_triangle)}"),
+			(
+				"angles",
+				(
+					f"{self.smallest_angle:.1f}° … {self.largest_angle:.1f}°, smallest in "
+					f"{at(self.smallest_angle_triangle)}"
+				),
+			),
 			("edges", f"{self.shortest_edge:.4g} … {self.longest_edge:.4g} m, mean {self.mean_edge:.4g} m"),
 			("areas", f"{self.smallest_area:.4g} … {self.largest_area:.4g} m²"),
-			("aspect", f"up to {self.largest_aspect:.2f} (equilateral: 1), {at(self.largest_aspect_triangle)}"),
+			(
+				"aspect",
+				f"up to {self.largest_aspect:.2f} (equilateral: 1), {at(self.largest_aspect_triangle)}",
+			),
 			("ruling", f"smallest height {self.smallest_height:.4g} m, {at(self.ruling_triangle)}"),
 		]
 		for name, (count, area) in self.regions.items():
 			if count:
-				rows.append((f"region {name!r}" if name else "default", f"{count} triangles, {area:.6g} m²"))
+				rows.append(
+					(f"region {name!r}" if name else "default", f"{count} triangles, {area:.6g} m²")
+				)
 		width = max(len(head) for head, _ in rows)
 		return "\n".join(f"{head:<{width}}  {text}" for head, text in rows)
 

@@ -23,7 +23,8 @@ class Mesh:
 	:param region_names: names; the first is "", the default region, even when no triangle is in it
 	:param orient: turn clockwise triangles over
 
-	Making one checks types, shapes and ranges; :meth:`validate` checks the geometry. What this package makes or reads is valid.
+	Making one checks types, shapes and ranges; :meth:`validate` checks the geometry.
+	What this package makes or reads is valid.
 	"""
 	nodes: np.ndarray
 	triangles: np.ndarray
@@ -32,16 +33,24 @@ class Mesh:
 	orient: InitVar[bool] = False
 
 	def __post_init__(self, orient):
-		nodes, triangles, regions, names = checks.arrays(self.nodes, self.triangles, self.regions, self.region_names)
+		nodes, triangles, regions, names = checks.arrays(
+			self.nodes, self.triangles, self.regions, self.region_names
+		)
 		if orient:
-			triangles = np.where((_doubled_areas(nodes, triangles) < 0)[:, None], triangles[:, ::-1], triangles)
+			triangles = np.where(
+				(_doubled_areas(nodes, triangles) < 0)[:, None], triangles[:, ::-1], triangles
+			)
 		for name, value in (("nodes", nodes), ("triangles", triangles), ("regions", regions)):
 			value.setflags(write=False)
 			object.__setattr__(self, name, value)
 		object.__setattr__(self, "region_names", names)
 
 	def __repr__(self):
-		counts = "".join(f", {name} {np.count_nonzero(self.regions == i)}" for i, name in enumerate(self.region_names) if name)
+		counts = "".join(
+			f", {name} {np.count_nonzero(self.regions == i)}"
+			for i, name in enumerate(self.region_names)
+			if name
+		)
 		return f"Mesh({len(self.nodes)} nodes, {len(self.triangles)} triangles{counts})"
 
 	# ---- geometry, one value a triangle ----
@@ -69,7 +78,8 @@ class Mesh:
 
 	@cached_property
 	def heights(self):
-		"""(m,) smallest height [m] of each triangle; the smallest of all rules the time step where the material is the same."""
+		"""(m,) smallest height [m] of each triangle; the smallest of all rules the time step where the
+		material is the same."""
 		return 2 * np.abs(self.areas) / self.edge_lengths.max(axis=1)
 
 	@cached_property
@@ -87,9 +97,12 @@ class Mesh:
 
 	@cached_property
 	def _edge_table(self):
-		# Edge 3 t + k goes from corner k of triangle t to corner k+1. unique: its undirected edge, count: triangles at that one.
+		# Edge 3 t + k goes from corner k of triangle t to corner k+1. unique: its undirected edge, count:
+		# triangles at that one.
 		directed = np.stack([self.triangles, np.roll(self.triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-		edges, unique, count = np.unique(np.sort(directed, axis=1), axis=0, return_inverse=True, return_counts=True)
+		edges, unique, count = np.unique(
+			np.sort(directed, axis=1), axis=0, return_inverse=True, return_counts=True
+		)
 		return directed, edges, unique.reshape(-1), count
 
 	@property
@@ -160,7 +173,9 @@ class Mesh:
 	def region(self, name):
 		"""Indices of the triangles in a region."""
 		if name not in self.region_names:
-			raise ValueError(f"no region {name!r} in this mesh; it has {', '.join(map(repr, self.region_names))}")
+			raise ValueError(
+				f"no region {name!r} in this mesh; it has {', '.join(map(repr, self.region_names))}"
+			)
 		return np.flatnonzero(self.regions == self.region_names.index(name))
 
 	def select(self, polygon):
@@ -170,7 +185,8 @@ class Mesh:
 	# ---- other meshes ----
 
 	def validate(self):
-		"""Return this mesh, or raise ValueError at the first thing wrong with it, with its triangle or node and place."""
+		"""Return this mesh, or raise ValueError at the first thing wrong with it,
+		with its triangle or node and place."""
 		checks.geometry(self)
 		return self
 
@@ -191,10 +207,13 @@ class Mesh:
 	def reordered(self):
 		"""The same mesh renumbered for locality in memory.
 
-		Triangles are grouped by region, in each along a Hilbert curve; nodes follow in the order of first use. The numbering before does not matter.
+		Triangles are grouped by region, in each along a Hilbert curve; nodes follow in the order of first use.
+		The numbering before does not matter.
 		"""
 		plain = np.lexsort(self.centroids.T)  # the curve's order within its smallest cells is that of its input
-		curve = plain[np.frombuffer(_mesh.hilbertOrder(np.ascontiguousarray(self.centroids[plain])), dtype=np.int32)]
+		curve = plain[
+			np.frombuffer(_mesh.hilbertOrder(np.ascontiguousarray(self.centroids[plain])), dtype=np.int32)
+		]
 		order = curve[np.argsort(self.regions[curve], kind="stable")]
 		triangles = self.triangles[order]
 		used, first = np.unique(triangles, return_index=True)
@@ -204,7 +223,8 @@ class Mesh:
 		return Mesh(self.nodes[old], new[triangles], self.regions[order], self.region_names)
 
 	def write(self, path):
-		"""Write a file; its ending says the format (.msh, .vtu, .vtk …). Read it again with :func:`yade.ddem.mesh.read`."""
+		"""Write a file; its ending says the format (.msh, .vtu, .vtk …).
+		Read it again with :func:`yade.ddem.mesh.read`."""
 		from .files import write
 		write(self, path)
 

@@ -5,12 +5,15 @@ import os
 import re
 
 from .. import provenance
-from ..studies.bonded_study import ESYS, FIGURES, RECORD, UCS_CLAIMED, YOUNG_CLAIMED, change, claims, place, write_curves
+from ..studies.bonded_study import (
+	ESYS, FIGURES, RECORD, UCS_CLAIMED, YOUNG_CLAIMED, change, claims, place, write_curves
+)
 from . import bonded_study_figures as figures
 from . import pages
 
 _MEDIUM = (0.4e-3, 2e-3)  # radii [m]
-_SHOWN = [figure for figure in FIGURES if figure[0] not in ("particles", "bonds", "time_bottom_ms", "time_top_ms")]  # in tables
+# in tables
+_SHOWN = [figure for figure in FIGURES if figure[0] not in ("particles", "bonds", "time_bottom_ms", "time_top_ms")]
 TITLE = "Uniaxial compression of bonded spheres: the paper's figures"
 
 
@@ -37,8 +40,10 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 			drawn["influences"] = figures.influences(_compared(groups))
 	columns = [f"{title} [{unit}]" if unit else title for _, title, unit, _ in _SHOWN]
 	page = pages.render(
-		"bonded_study.html", {"tied": _tied}, title=TITLE, written=written, runs=sum(len(g.records) for g in groups), machine=pages.processor(), lead=lead(paper),
-		claims=said, packings=len(paper[0].records), columns=columns, rows=_rows(groups), breaks=_breaks(groups), settings=settings, command=command,
+		"bonded_study.html", {"tied": _tied}, title=TITLE, written=written,
+		runs=sum(len(g.records) for g in groups), machine=pages.processor(), lead=lead(paper),
+		claims=said, packings=len(paper[0].records), columns=columns, rows=_rows(groups),
+		breaks=_breaks(groups), settings=settings, command=command,
 		versions=versions, pictures=pages.save(drawn, folder, pdf), effects=effects(groups),
 		first_run=groups[0].label, **texts
 	)
@@ -55,15 +60,25 @@ def table(groups):
 	lines = [["", *(f"{title} [{unit}]" for _, title, unit, _ in _SHOWN)]]
 	lines += [[group.label, *(_cell(group, name, form) for name, _, _, form in _SHOWN)] for group in groups]
 	widths = [max(len(line[column]) for line in lines) for column in range(len(lines[0]))]
-	rows = ["  ".join([f"{line[0]:<{widths[0]}}", *(f"{cell:>{width}}" for cell, width in zip(line[1:], widths[1:]))]) for line in lines]
+	rows = [
+		"  ".join(
+			[f"{line[0]:<{widths[0]}}", *(f"{cell:>{width}}" for cell, width in zip(line[1:], widths[1:]))]
+		)
+		for line in lines
+	]
 	return "\n".join([rows[0], "-" * len(rows[0]), *rows[1:]])
 
 
 def lead(paper):
-	strengths = "; ".join(f"{g.spread('ucs_MPa').text('{:.0f}')} MPa for {g.range_text}" for g in paper if g.stiffness == paper[0].stiffness)
+	strengths = "; ".join(
+		f"{g.spread('ucs_MPa').text('{:.0f}')} MPa for {g.range_text}"
+		for g in paper
+		if g.stiffness == paper[0].stiffness
+	)
 	return (
-		"Prisms of bonded spheres, 10 × 20 × 10 mm, are crushed between elastic walls, as in the tutorial of ESyS-Particle. Between walls of "
-		f"{paper[0].stiffness / 1e9:g} GPa their strength by eq. 9, median and range over packings, is {strengths}."
+		"Prisms of bonded spheres, 10 × 20 × 10 mm, are crushed between elastic walls, as in the tutorial of "
+		f"ESyS-Particle. Between walls of {paper[0].stiffness / 1e9:g} GPa their strength by eq. 9, median "
+		f"and range over packings, is {strengths}."
 	)
 
 
@@ -71,31 +86,48 @@ def findings(groups):
 	"""What the comparison means, in sentences."""
 	ucs, young = ESYS["ref_s1"]
 	said = [
-		"Factor of two. Eq. 9 divides the sum of both wall forces by 2A; the script printed in ESyS-Particle's tutorial, which the paper follows, divides it by A. "
-		f"With the tutorial's parameters ESyS-Particle 2.3.5 itself gives {ucs:g} MPa and {young:g} GPa by eq. 9 on a sample of 0.4–2.0 mm, and the tutorial's own "
-		f"plot shows 145 MPa and 91 GPa. Twice that, {2 * ucs:.0f} MPa and {2 * young:.0f} GPa, are at the upper ends of the paper's ranges, {UCS_CLAIMED[0]:g}–"
-		f"{UCS_CLAIMED[1]:g} MPa and {YOUNG_CLAIMED[0]:g}–{YOUNG_CLAIMED[1]:g} GPa: its stresses, strengths and moduli are very likely twice those of eq. 9. That is "
-		"not proven, since the packings are not the same."
+		(
+			"Factor of two. Eq. 9 divides the sum of both wall forces by 2A; the script printed in "
+			"ESyS-Particle's tutorial, which the paper follows, divides it by A. With the tutorial's "
+			f"parameters ESyS-Particle 2.3.5 itself gives {ucs:g} MPa and {young:g} GPa by eq. 9 on "
+			"a sample of 0.4–2.0 mm, and the tutorial's own plot shows 145 MPa and 91 GPa. Twice that, "
+			f"{2 * ucs:.0f} MPa and {2 * young:.0f} GPa, are at the upper ends of the paper's ranges, "
+			f"{UCS_CLAIMED[0]:g}–{UCS_CLAIMED[1]:g} MPa and {YOUNG_CLAIMED[0]:g}–{YOUNG_CLAIMED[1]:g} "
+			"GPa: its stresses, strengths and moduli are very likely twice those of eq. 9. That is not "
+			"proven, since the packings are not the same."
+		)
 	]
 	medium, sample = _named(groups, "paper", _MEDIUM), _named(groups, "sample of ESyS-Particle", _MEDIUM)
 	if medium and sample:
 		mine = sample.records[0].figures()
 		said.append(
-			f"The packing matters as much. On that sample of ESyS-Particle the bonds here give {mine['ucs_MPa']:.1f} MPa and {mine['young_GPa']:.1f} GPa as well. The "
-			"packings made here by GenGeo, with the same radii, are denser and touch the walls with more spheres, and give "
-			f"{medium.spread('ucs_MPa').text('{:.0f}')} MPa and {medium.spread('young_GPa').text('{:.0f}')} GPa."
+			"The packing matters as much. On that sample of ESyS-Particle the bonds here give "
+			f"{mine['ucs_MPa']:.1f} MPa and {mine['young_GPa']:.1f} GPa as well. The packings made here "
+			"by GenGeo, with the same radii, are denser and touch the walls with more spheres, and give "
+			f"{medium.spread('ucs_MPa').text('{:.0f}')} MPa and "
+			f"{medium.spread('young_GPa').text('{:.0f}')} GPa."
 		)
 	return said
 
 
 def readings(groups):
-	"""Where strength and modulus lie in the paper's ranges: label, then UCS and E by eq. 9, and both divided by A instead."""
+	"""Where strength and modulus lie in the paper's ranges:
+	label, then UCS and E by eq. 9, and both divided by A instead."""
 	softest = min(group.stiffness for group in groups)
 	rows = []
 	for group in groups:
 		if group.stiffness == softest and group.kind in ("paper", "sample of ESyS-Particle"):
 			measured = ((group.spread("ucs_MPa"), UCS_CLAIMED), (group.spread("young_GPa"), YOUNG_CLAIMED))
-			rows.append([group.label, *(place(factor * spread, claimed) for factor in (1, 2) for spread, claimed in measured)])
+			rows.append(
+				[
+					group.label,
+					*(
+						place(factor * spread, claimed)
+						for factor in (1, 2)
+						for spread, claimed in measured
+					),
+				]
+			)
 	return rows
 
 
@@ -106,22 +138,32 @@ def influences(groups):
 	rock = _named(groups, "rock density", base.radii)
 	if rock:
 		text = (
-			"Rate. ESyS-Particle's default mass r³ makes the spheres 92 times as heavy as rock, and its waves slow. With the density of rock, 2600 kg/m³, and everything "
-			f"else the same the strength changes by {_percent(change(rock, base, 'ucs_MPa'))} and Young's modulus by {_percent(change(rock, base, 'young_GPa'))}, packing by "
-			"packing: the paper's test is not quasi-static."
+			"Rate. ESyS-Particle's default mass r³ makes the spheres 92 times as heavy as rock, and its "
+			"waves slow. With the density of rock, 2600 kg/m³, and everything else the same the strength "
+			f"changes by {_percent(change(rock, base, 'ucs_MPa'))} and Young's modulus by "
+			f"{_percent(change(rock, base, 'young_GPa'))}, packing by packing: the paper's test is not "
+			"quasi-static."
 		)
-		heavy, light = _named(groups, "sample of ESyS-Particle", base.radii), _named(groups, "sample of ESyS-Particle, rock density", base.radii)
+		heavy, light = (
+			_named(groups, "sample of ESyS-Particle", base.radii),
+			_named(groups, "sample of ESyS-Particle, rock density", base.radii),
+		)
 		if heavy and light:
 			theirs = 100 * (ESYS["ref_s1_rock"][0] / ESYS["ref_s1"][0] - 1)
 			mine = _percent(change(light, heavy, "ucs_MPa"))
-			text += f" On the sample of ESyS-Particle the strength changes by {mine}, in ESyS-Particle itself by −{-theirs:.0f} %."
+			text += (
+				f" On the sample of ESyS-Particle the strength changes by {mine}, in ESyS-Particle "
+				f"itself by −{-theirs:.0f} %."
+			)
 		said.append(text)
 	consistent = _named(groups, "consistent bonds", base.radii)
 	if consistent:
 		said.append(
-			"Convention. Consistent bonds (full bending moment EI/d₀, rest length as built, conservative, friction that remembers sliding) instead of ESyS-Particle's, "
-			f"with the same masses, change the strength by {_percent(change(consistent, base, 'ucs_MPa'))} and Young's modulus by "
-			f"{_percent(change(consistent, base, 'young_GPa'))}: twice the bending moment puts the rim of a bond under more tension."
+			"Convention. Consistent bonds (full bending moment EI/d₀, rest length as built, conservative, "
+			"friction that remembers sliding) instead of ESyS-Particle's, with the same masses, change "
+			f"the strength by {_percent(change(consistent, base, 'ucs_MPa'))} and Young's modulus by "
+			f"{_percent(change(consistent, base, 'young_GPa'))}: twice the bending moment puts the rim of "
+			"a bond under more tension."
 		)
 	return said
 
@@ -137,7 +179,11 @@ def _compared(groups):
 	"""The groups of the picture of influences: the paper's test of one range, and what else was done with it."""
 	others = [g for g in groups if g.kind != "paper"]
 	base = next(g for g in groups if g.kind == "paper" and g.radii == others[0].radii)
-	return [base] + [g for g in others if g.radii == base.radii and g.kind in ("rock density", "consistent bonds", "sample of ESyS-Particle")]
+	return [base] + [
+		g
+		for g in others
+		if g.radii == base.radii and g.kind in ("rock density", "consistent bonds", "sample of ESyS-Particle")
+	]
 
 
 def _tied(text):
@@ -156,23 +202,47 @@ def _cell(group, name, form):
 
 def _rows(groups):
 	"""Label, and median and range of every figure."""
-	return [(group.label, [group.spread(name).texts(form) if group.spread(name) else ("–", "") for name, _, _, form in _SHOWN]) for group in groups]
+	return [
+		(
+			group.label,
+			[
+				group.spread(name).texts(form) if group.spread(name) else ("–", "")
+				for name, _, _, form in _SHOWN
+			],
+		)
+		for group in groups
+	]
 
 
 def _breaks(groups):
 	"""Labels of the rows above which the table has a line."""
-	return [new.label for old, new in zip(groups, groups[1:]) if (old.kind == "paper", old.stiffness) != (new.kind == "paper", new.stiffness)]
+	return [
+		new.label
+		for old, new in zip(groups, groups[1:])
+		if (old.kind == "paper", old.stiffness) != (new.kind == "paper", new.stiffness)
+	]
 
 
 def _write_runs(groups, path):
 	with provenance.csv_writer(path) as writer:
 		titles = [f"{name} [{unit or '-'}]" for name, _, unit, _ in FIGURES]
-		writer.writerow(["group", "kind", "radius_min [m]", "radius_max [m]", "wall_stiffness [Pa]", "seed", *titles])
+		writer.writerow(
+			["group", "kind", "radius_min [m]", "radius_max [m]", "wall_stiffness [Pa]", "seed", *titles]
+		)
 		for group in groups:
 			for record in group.records:
 				measured = record.figures()
-				start = [group.label, group.kind, *group.radii, group.stiffness, record.options.get("seed", "")]
-				writer.writerow(start + ["" if measured[name] is None else measured[name] for name, _, _, _ in FIGURES])
+				start = [
+					group.label, group.kind, *group.radii, group.stiffness,
+					record.options.get("seed", "")
+				]
+				writer.writerow(
+					start
+					+ [
+						"" if measured[name] is None else measured[name]
+						for name, _, _, _ in FIGURES
+					]
+				)
 
 
 def _plain(groups, said, texts, written, command, options, versions):
@@ -199,8 +269,17 @@ def _plain(groups, said, texts, written, command, options, versions):
 
 
 def _run(record):
-	return {"folder": os.path.basename(record.folder), "steps": record.summary["steps"], "processor_s": record.summary["cpu_s"], **record.figures()}
+	return {
+		"folder": os.path.basename(record.folder),
+		"steps": record.summary["steps"],
+		"processor_s": record.summary["cpu_s"],
+		**record.figures(),
+	}
 
 
 def _spread(spread):
-	return None if spread is None else {"median": float(spread.median), "smallest": float(spread.low), "largest": float(spread.high)}
+	return (
+		None
+		if spread is None
+		else {"median": float(spread.median), "smallest": float(spread.low), "largest": float(spread.high)}
+	)

@@ -33,14 +33,20 @@ def stress_strain(groups):
 		for ax, members in panels:
 			for colour, group in zip(_COLOURS, members):
 				_stress_band(ax, group, colour, group.range_text)
-			_dress(ax, "axial strain [%]", "axial stress, eq. 9 [MPa]" if ax is panels[0][0] else None, _title(members))
+			_dress(
+				ax,
+				"axial strain [%]",
+				"axial stress, eq. 9 [MPa]" if ax is panels[0][0] else None,
+				_title(members),
+			)
 			_doubled(ax, label=ax is panels[-1][0])
 		_legend(fig, panels[0][0])
 	return fig
 
 
 def influences(groups):
-	"""Stress over strain for the middle range: what the mass of the spheres, the convention and the packing do to it."""
+	"""Stress over strain for the middle range: what the mass of the spheres,
+	the convention and the packing do to it."""
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.COLUMN, 80)
 		fig.set_layout_engine("constrained")
@@ -53,7 +59,12 @@ def influences(groups):
 
 
 #: pictures of the paper, in order
-PAPER = {"broken_bonds": broken_bonds, "force_bottom": force_bottom, "force_top": force_top, "stress_strain": stress_strain}
+PAPER = {
+	"broken_bonds": broken_bonds,
+	"force_bottom": force_bottom,
+	"force_top": force_top,
+	"stress_strain": stress_strain,
+}
 
 
 def _over_time(groups, quantity, factor, label):
@@ -64,7 +75,13 @@ def _over_time(groups, quantity, factor, label):
 				times = np.linspace(0, group.end, _POINTS)
 				_band(ax, 1e3 * times, group.curve(quantity, times), factor, colour, group.range_text)
 			_dress(ax, "time [ms]", label if ax is panels[0][0] else None, None)
-			above = ax.secondary_xaxis("top", functions=(lambda ms: ms * 1e-3 / RECORD / 1000, lambda records: records * 1000 * RECORD * 1e3))
+			above = ax.secondary_xaxis(
+				"top",
+				functions=(
+					lambda ms: ms * 1e-3 / RECORD / 1000,
+					lambda records: records * 1000 * RECORD * 1e3,
+				),
+			)
 			above.set_xlabel(f"{_title(members)}\nrecords of the paper, every 10 ns [thousands]")
 			above.spines["top"].set_linewidth(0.6)
 		_legend(fig, panels[0][0])
@@ -89,7 +106,10 @@ def _panels(groups):
 		fig = plots.figure(plots.PAGE if len(stiffnesses) > 1 else plots.COLUMN, _PANEL)
 		fig.set_layout_engine("constrained")
 		axes = fig.subplots(1, len(stiffnesses), sharey=True, squeeze=False)[0]
-	return fig, [(ax, sorted((g for g in groups if g.stiffness == k), key=lambda g: g.radii)) for ax, k in zip(axes, stiffnesses)]
+	return fig, [
+		(ax, sorted((g for g in groups if g.stiffness == k), key=lambda g: g.radii))
+		for ax, k in zip(axes, stiffnesses)
+	]
 
 
 def _title(members):

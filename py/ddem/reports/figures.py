@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Pictures of tests in compression or tension, each made from finished runs and returned as a matplotlib figure; None where there is nothing to show."""
+"""Pictures of tests in compression or tension, each made from finished runs and returned as a matplotlib figure;
+None where there is nothing to show."""
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.collections import LineCollection
@@ -13,7 +14,8 @@ from ..studies.snapshots import TriangleSnapshot
 
 MODEL_COLOURS = {"rigid": plots.COLOURS[1], "deformable": plots.COLOURS[0]}
 _PART_COLOURS = {
-	"elastic": "#56B4E9", "kinetic": "#F0E442", "plastic flow": "#E69F00", "damage": "#D55E00", "broken bonds": "#CC79A7", "friction": "#009E73",
+	"elastic": "#56B4E9", "kinetic": "#F0E442", "plastic flow": "#E69F00", "damage": "#D55E00",
+	"broken bonds": "#CC79A7", "friction": "#009E73",
 	"damping": "#999999"
 }
 
@@ -30,10 +32,16 @@ def stress_strain(runs):
 			ax.plot(100 * measures.strain_at_peak, measures.ucs / 1e6, "o", color=colour, markersize=3.5)
 			if np.isfinite(measures.young):
 				ends = np.array([0.0, 0.9 * measures.ucs])
-				ax.plot(100 * (ends - measures.offset) / measures.young, ends / 1e6, "--", color=colour, linewidth=0.6)
+				ax.plot(
+					100 * (ends - measures.offset) / measures.young, ends / 1e6, "--", color=colour,
+					linewidth=0.6
+				)
 		ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
 		tension = runs[0].test == "tension"
-		ax.plot([], [], "o", color="0.4", markersize=3.5, label="peak (tensile strength)" if tension else "peak (UCS)")
+		ax.plot(
+			[], [], "o", color="0.4", markersize=3.5,
+			label="peak (tensile strength)" if tension else "peak (UCS)"
+		)
 		_label(ax, "axial strain [%]", "tensile stress [MPa]" if tension else "axial stress [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))
@@ -48,7 +56,10 @@ def wall_forces(runs):
 		for ax, run in zip(axes, runs):
 			time, colour = 1e3 * run.series["time"], MODEL_COLOURS[run.model]
 			ax.plot(time, run.series["force_top"] / 1e3, color=colour, label="top platen")
-			ax.plot(time, run.series["force_bottom"] / 1e3, color="0.25", linewidth=0.8, linestyle=(0, (3, 1.2)), label="bottom platen")
+			ax.plot(
+				time, run.series["force_bottom"] / 1e3, color="0.25", linewidth=0.8,
+				linestyle=(0, (3, 1.2)), label="bottom platen"
+			)
 			_label(ax, "time [ms]", "force on platen [kN]" if ax is axes[0] else None, run.title)
 			ax.set_xlim(left=0)
 			ax.legend()
@@ -81,14 +92,23 @@ def broken_bonds(runs):
 	fig, axes = _figure(1, plots.COLUMN, 65)
 	ax, time = axes[0], run.series["time"]
 	with rc_context(plots.STYLE):
-		for label, mode, colour, line in (("all", None, "0.25", "-"), ("in tension", "tension", plots.COLOURS[0], "-"), ("in shear", "shear", plots.COLOURS[4], "-")):
+		for label, mode, colour, line in (
+			("all", None, "0.25", "-"),
+			("in tension", "tension", plots.COLOURS[0], "-"),
+			("in shear", "shear", plots.COLOURS[4], "-"),
+		):
 			ax.plot(1e3 * time, broken_list.counts(run.broken, time, mode), line, color=colour, label=label)
-		ax.axvline(1e3 * time[run.strength.peak], color="0.5", linewidth=0.6, linestyle=(0, (3, 1.5)), label="peak stress")
+		ax.axvline(
+			1e3 * time[run.strength.peak], color="0.5", linewidth=0.6, linestyle=(0, (3, 1.5)),
+			label="peak stress"
+		)
 		_label(ax, "time [ms]", "broken bonds [-]")
 		ax.set_xlim(0, 1e3 * time[-1])
 		ax.set_ylim(bottom=0)
 		bonds = run.extra["bonds"]
-		share = ax.secondary_yaxis("right", functions=(lambda count: 100 * count / bonds, lambda part: part * bonds / 100))
+		share = ax.secondary_yaxis(
+			"right", functions=(lambda count: 100 * count / bonds, lambda part: part * bonds / 100)
+		)
 		share.set_ylabel("share of all bonds [%]")
 		share.spines["right"].set_linewidth(0.6)
 		fig.legend(loc="outside upper center", ncols=4, columnspacing=1.5)
@@ -105,18 +125,32 @@ def energy(runs):
 			strain, base = 100 * run.series["strain"], 0.0
 			for part in ENERGY_PARTS:
 				values = run.energy(part)
-				if values is None or not np.abs(values).max() > 0.01 * np.abs(run.energy("input")).max():
+				if (
+					values is None
+					or not np.abs(values).max() > 0.01 * np.abs(run.energy("input")).max()
+				):
 					continue
-				shown[part] = book.fill_between(strain, base, base + values, color=_PART_COLOURS[part], linewidth=0, alpha=0.85)
+				shown[part] = book.fill_between(
+					strain, base, base + values, color=_PART_COLOURS[part], linewidth=0, alpha=0.85
+				)
 				base = base + values
-			shown["work of the platens"], = book.plot(strain, run.energy("input"), color="black", linewidth=0.9)
+			(shown["work of the platens"],) = book.plot(
+				strain, run.energy("input"), color="black", linewidth=0.9
+			)
 			_label(book, None, "energy [J]" if book is axes[0, 0] else None, run.title)
-			error.semilogy(strain, np.maximum(100 * np.abs(run.series["energy_drift"]) / run.energy_through, 1e-10), color=MODEL_COLOURS[run.model])
+			error.semilogy(
+				strain,
+				np.maximum(100 * np.abs(run.series["energy_drift"]) / run.energy_through, 1e-10),
+				color=MODEL_COLOURS[run.model],
+			)
 			_label(error, "axial strain [%]", "error [%]" if error is axes[1, 0] else None)
 			book.set_xlim(0, strain[-1])
 			book.set_ylim(bottom=0)
 		_same_limits([ax for ax in axes[1]])
-		fig.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=7 if len(runs) > 1 else 3, columnspacing=1.2, handlelength=1.4)
+		fig.legend(
+			shown.values(), shown.keys(), loc="outside lower center", ncols=7 if len(runs) > 1 else 3,
+			columnspacing=1.2, handlelength=1.4
+		)
 	return fig
 
 
@@ -127,13 +161,26 @@ def final_damage(runs):
 
 def evolution(runs):
 	"""Damage at the same stages of both tests: on the way up, at the peak, on the way down, at the end."""
-	chosen = [[run.snapshot_near(run.series["time"][row]) for row in instants(run.series["strain"], run.series["stress"])] for run in runs]
+	chosen = [
+		[
+			run.snapshot_near(run.series["time"][row])
+			for row in instants(run.series["strain"], run.series["stress"])
+		]
+		for run in runs
+	]
 	return _maps(runs, chosen, plots.PAGE, _draw_damage, "damage [-]", stages=True)
 
 
 def rotation(runs):
 	"""Rotation of the particles at the end, side by side, each in its own scale."""
-	return _maps(runs, [[run.snapshots[-1]] for run in runs], _width(runs), _draw_rotation, "rotation [rad]", own_scales=True)
+	return _maps(
+		runs,
+		[[run.snapshots[-1]] for run in runs],
+		_width(runs),
+		_draw_rotation,
+		"rotation [rad]",
+		own_scales=True,
+	)
 
 
 def engines(runs):
@@ -144,9 +191,18 @@ def engines(runs):
 		for run in runs:
 			costs = _engine_costs(run)
 			for name, cost, share in costs:
-				ax.barh(place, cost, color=MODEL_COLOURS[run.model], height=0.72, label=run.title if name == costs[0][0] else None)
-				text = f"{cost:.0f} ns ({100 * share:.1f} %)" if cost >= 10 else f"{cost:.2g} ns ({100 * share:.1f} %)"
-				ax.annotate(text, (cost, place), (3, 0), textcoords="offset points", va="center", fontsize=7)
+				ax.barh(
+					place, cost, color=MODEL_COLOURS[run.model], height=0.72,
+					label=run.title if name == costs[0][0] else None
+				)
+				text = (
+					f"{cost:.0f} ns ({100 * share:.1f} %)"
+					if cost >= 10
+					else f"{cost:.2g} ns ({100 * share:.1f} %)"
+				)
+				ax.annotate(
+					text, (cost, place), (3, 0), textcoords="offset points", va="center", fontsize=7
+				)
 				ticks.append((place, name))
 				place += 1
 			place += 1
@@ -160,15 +216,21 @@ def engines(runs):
 
 #: pictures of the report, in order
 ALL = {
-	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces, "evolution": evolution,
+	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces,
+	"evolution": evolution,
 	"final_damage": final_damage, "rotation": rotation, "energy": energy, "engines": engines
 }
 
 
 def _engine_costs(run, least=0.005):
-	"""(name, ns per particle and step, share of all engines), the largest first; those with less than *least* of the time together as "others"."""
+	"""(name, ns per particle and step, share of all engines), the largest first; those with less than *least* of
+	the time together as "others"."""
 	total = sum(seconds for _, seconds, _ in run.engines) or 1.0
-	rows = [(name, 1e9 * seconds / run.steps / run.particles, seconds / total) for name, seconds, calls in run.engines if calls]
+	rows = [
+		(name, 1e9 * seconds / run.steps / run.particles, seconds / total)
+		for name, seconds, calls in run.engines
+		if calls
+	]
 	large = sorted((row for row in rows if row[2] >= least), key=lambda row: -row[1])
 	small = [row for row in rows if row[2] < least]
 	return large + ([("others", sum(row[1] for row in small), sum(row[2] for row in small))] if small else [])
@@ -176,10 +238,15 @@ def _engine_costs(run, least=0.005):
 
 def _draw_damage(snapshot, ax):
 	if isinstance(snapshot, TriangleSnapshot):
-		plots.field((snapshot.nodes, snapshot.triangles), snapshot.damage, "", ax=ax, limits=(0, 1), colorbar=False)
+		plots.field(
+			(snapshot.nodes, snapshot.triangles), snapshot.damage, "", ax=ax, limits=(0, 1), colorbar=False
+		)
 		ax.add_collection(LineCollection(1e3 * snapshot.nodes[snapshot.border], colors="white", linewidths=0.7))
 	else:
-		plots.spheres(snapshot.centres, snapshot.radii, snapshot.damage, "", ax=ax, limits=(0, 1), colorbar=False, cracks=snapshot.cracks)
+		plots.spheres(
+			snapshot.centres, snapshot.radii, snapshot.damage, "", ax=ax, limits=(0, 1), colorbar=False,
+			cracks=snapshot.cracks
+		)
 
 
 def _draw_rotation(snapshot, ax):
@@ -196,14 +263,16 @@ def _width(runs):
 
 
 def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
-	"""A row of pictures a model with the stage above each and a colour bar at the side, or one row with a picture a model and colour bars below; all of the same
-	piece of the plane.
+	"""A row of pictures a model with the stage above each and a colour bar at the side, or one row with a picture
+	a model and colour bars below; all of the same piece of the plane.
 	"""
 	rows, columns = (len(runs), max(map(len, snapshots))) if stages else (1, len(runs))
 	low, high = _window(snapshots)
 	across = (width - (29 if stages else 13) - 4 * (columns - 1)) / columns  # of one picture [mm]
 	with rc_context(plots.STYLE):
-		fig = plots.figure(width, rows * (across * (high - low)[1] / (high - low)[0] + (5 if stages else 20)) + 10)
+		fig = plots.figure(
+			width, rows * (across * (high - low)[1] / (high - low)[0] + (5 if stages else 20)) + 10
+		)
 		axes = fig.subplots(rows, columns, squeeze=False, sharex=True, sharey=True)
 		for ax in axes.flat:
 			ax.set_visible(False)
@@ -222,9 +291,16 @@ def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
 		if stages:
 			for ax, run in zip(axes[:, 0], runs):
 				ax.set_ylabel(f"{run.title}\n{ax.get_ylabel()}")
-		look = {"shrink": 0.7, "aspect": 30} if stages else {"shrink": 0.9, "aspect": 30 if own_scales else 45, "orientation": "horizontal"}
+		look = (
+			{"shrink": 0.7, "aspect": 30}
+			if stages
+			else {"shrink": 0.9, "aspect": 30 if own_scales else 45, "orientation": "horizontal"}
+		)
 		for ax in axes.flat if own_scales else axes.flat[:1]:
-			bar = fig.colorbar(ax.collections[0], ax=ax if own_scales else axes, label=label, extend="both" if own_scales else "neither", **look)
+			bar = fig.colorbar(
+				ax.collections[0], ax=ax if own_scales else axes, label=label,
+				extend="both" if own_scales else "neither", **look
+			)
 			if own_scales:
 				bar.ax.locator_params(nbins=3)
 				bar.formatter = FormatStrFormatter("%g")
@@ -237,7 +313,8 @@ def _stage(run, snapshot):
 
 
 def _window(snapshots):
-	"""Corners of the piece of the plane that shows nearly all of every sample, but not the last fragment that flew away."""
+	"""Corners of the piece of the plane that shows nearly all of every sample,
+	but not the last fragment that flew away."""
 	def places(snapshot):
 		return snapshot.nodes if isinstance(snapshot, TriangleSnapshot) else snapshot.centres[:, :2]
 

@@ -49,7 +49,10 @@ def render(template, filters=None, **values):
 	:param filters: name -> function, for the template
 	:param values: for the template; a name that it uses and that is missing is an error
 	"""
-	environment = Environment(loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+	environment = Environment(
+		loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
+		lstrip_blocks=True
+	)
 	environment.filters.update(filters or {})
 	origin = provenance.record()
 	comment = Markup(provenance.comment(origin))

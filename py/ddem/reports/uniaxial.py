@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Report of tests in compression or tension: table, summary.json, a CSV a model, broken bonds, pictures, and a report.html that holds everything.
+"""Report of tests in compression or tension: table, summary.json, a CSV a model, broken bonds, pictures,
+and a report.html that holds everything.
 
 Works on finished runs (:class:`studies.runs.Run`), so a report can be made again without the scene::
 
@@ -60,10 +61,15 @@ class Report:
 	:param pdf: write each picture as a PDF as well
 	"""
 
-	def __init__(self, runs, folder, title, settings=(), command="", options=None, versions=None, notes=(), pictures=True, pdf=False):
+	def __init__(
+		self, runs, folder, title, settings=(), command="", options=None, versions=None, notes=(),
+		pictures=True, pdf=False
+	):
 		if not runs:
 			raise ValueError("a report needs at least one run")
-		self.runs, self.folder, self.title, self.settings, self.command = list(runs), str(folder), title, list(settings), command
+		self.runs, self.folder, self.title, self.settings, self.command = (
+			list(runs), str(folder), title, list(settings), command
+		)
 		self.options, self.versions, self.notes = dict(options or {}), dict(versions or {}), list(notes)
 		self.pictures, self.pdf = pictures, pdf
 		self.written = datetime.datetime.now().astimezone().replace(microsecond=0)
@@ -77,7 +83,13 @@ class Report:
 			"options": self.options,
 			"versions": self.versions,
 			"machine": {**pages.machine(), "threads": self.runs[0].threads},
-			"models": {run.model: {**run.summary(), "parameters": {name: value for name, value, _ in run.parameters}} for run in self.runs},
+			"models": {
+				run.model: {
+					**run.summary(),
+					"parameters": {name: value for name, value, _ in run.parameters},
+				}
+				for run in self.runs
+			},
 			"cost_ratio_deformable_to_rigid": cost_ratios(self.runs),
 		}
 
@@ -100,7 +112,10 @@ class Report:
 		rows = self.table_rows()
 		titles = [run.title for run in self.runs]
 		first = max(len(f"{text} [{unit}]") if unit else len(text) for text, unit, _ in filter(None, rows))
-		widths = [max(len(title), *(len(values[i]) for _, _, values in filter(None, rows))) for i, title in enumerate(titles)]
+		widths = [
+			max(len(title), *(len(values[i]) for _, _, values in filter(None, rows)))
+			for i, title in enumerate(titles)
+		]
 		rule = "-" * (first + sum(width + 3 for width in widths))
 		lines = [" " * first + "".join(f"   {title:>{width}}" for title, width in zip(titles, widths)), rule]
 		for row in rows:
@@ -108,7 +123,10 @@ class Report:
 				lines.append(rule)
 				continue
 			text, unit, values = row
-			lines.append(f"{f'{text} [{unit}]' if unit else text:<{first}}" + "".join(f"   {value:>{width}}" for value, width in zip(values, widths)))
+			lines.append(
+				f"{f'{text} [{unit}]' if unit else text:<{first}}"
+				+ "".join(f"   {value:>{width}}" for value, width in zip(values, widths))
+			)
 		return "\n".join(lines)
 
 	def write(self):
@@ -119,16 +137,23 @@ class Report:
 			run.series.write(self._path(f"{run.model}.csv"))
 			if run.broken is not None:
 				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
-		pictures = pages.save({name: draw(self.runs) for name, draw in figures.ALL.items()}, self.folder, self.pdf) if self.pictures else {}
+		pictures = (
+			pages.save({name: draw(self.runs) for name, draw in figures.ALL.items()}, self.folder, self.pdf)
+			if self.pictures
+			else {}
+		)
 		return pages.write(self.html(pictures), self._path("report.html"))
 
 	def html(self, pictures):
 		"""The page; *pictures* (:class:`pages.Picture`) by name."""
 		summary = self.summary()
 		return pages.render(
-			"compression.html", title=self.title, written=self.written, command=self.command, settings=self.settings, notes=self.notes, versions=self.versions,
-			machine=summary["machine"], runs=self.runs, by_model={run.model: run for run in self.runs}, summaries=summary["models"], rows=self.table_rows(),
-			ratios=summary["cost_ratio_deformable_to_rigid"], pictures=pictures, options=self.options, one=self.runs[0] if len(self.runs) == 1 else None
+			"compression.html", title=self.title, written=self.written, command=self.command,
+			settings=self.settings, notes=self.notes, versions=self.versions,
+			machine=summary["machine"], runs=self.runs, by_model={run.model: run for run in self.runs},
+			summaries=summary["models"], rows=self.table_rows(),
+			ratios=summary["cost_ratio_deformable_to_rigid"], pictures=pictures, options=self.options,
+			one=self.runs[0] if len(self.runs) == 1 else None
 		)
 
 	def _path(self, name):

@@ -1,8 +1,10 @@
 # GPL v2 or later, see LICENSE.
-"""The study of bonded spheres after ESyS-Particle's tutorial: groups of runs, their spread over packings, and what the paper claims about them. Needs no YADE.
+"""The study of bonded spheres after ESyS-Particle's tutorial: groups of runs, their spread over packings, and what the
+paper claims about them. Needs no YADE.
 
-The paper crushes spheres of three ranges of radii between walls of two stiffnesses, and shows broken bonds, forces on both walls, and stress over strain. A
-:class:`Group` holds the runs of several packings with the same parameters, made by scripts/ucs_bonded.py; :func:`claims` sets them beside the paper's numbers.
+The paper crushes spheres of three ranges of radii between walls of two stiffnesses, and shows broken bonds, forces on
+both walls, and stress over strain. A :class:`Group` holds the runs of several packings with the same parameters, made
+by scripts/ucs_bonded.py; :func:`claims` sets them beside the paper's numbers.
 """
 import json
 import os
@@ -15,16 +17,21 @@ from ..series import Series
 
 RECORD = 1e-8  #: between two records of the paper [s]: every tenth step of 1 ns; its figures count them as steps
 
-#: what ESyS-Particle 2.3.5 itself gives with the tutorial's parameters, by eq. 9: strength [MPa], Young's modulus [GPa] (tests/data/esys/runs.csv)
+#: what ESyS-Particle 2.3.5 itself gives with the tutorial's parameters, by eq. 9: strength [MPa], Young's modulus [GPa]
+#: (tests/data/esys/runs.csv)
 ESYS = {"ref_s1": (148.9, 90.8), "dbl_s1": (96.9, 52.3), "ref_s1_rock": (124.6, 90.4)}
 UCS_CLAIMED, YOUNG_CLAIMED, BROKEN_CLAIMED = (180.0, 300.0), (120.0, 190.0), (30.0, 40.0)  # MPa, GPa, %
 
 #: columns of the table and of runs.csv: name, title, unit, format
 FIGURES = (
-	("particles", "spheres", "", "{:.0f}"), ("bonds", "bonds", "", "{:.0f}"), ("ucs_MPa", "UCS", "MPa", "{:.0f}"), ("young_GPa", "E", "GPa", "{:.0f}"),
-	("strain_at_peak_percent", "strain at the peak", "%", "{:.3f}"), ("broken_at_peak_percent", "broken at the peak", "%", "{:.0f}"),
-	("broken_at_end_percent", "broken at the end", "%", "{:.0f}"), ("force_bottom_kN", "largest force, bottom", "kN", "{:.1f}"),
-	("force_top_kN", "largest force, top", "kN", "{:.1f}"), ("time_bottom_ms", "at, bottom", "ms", "{:.3f}"), ("time_top_ms", "at, top", "ms", "{:.3f}")
+	("particles", "spheres", "", "{:.0f}"), ("bonds", "bonds", "", "{:.0f}"), ("ucs_MPa", "UCS", "MPa", "{:.0f}"),
+	("young_GPa", "E", "GPa", "{:.0f}"),
+	("strain_at_peak_percent", "strain at the peak", "%", "{:.3f}"),
+	("broken_at_peak_percent", "broken at the peak", "%", "{:.0f}"),
+	("broken_at_end_percent", "broken at the end", "%", "{:.0f}"),
+	("force_bottom_kN", "largest force, bottom", "kN", "{:.1f}"),
+	("force_top_kN", "largest force, top", "kN", "{:.1f}"), ("time_bottom_ms", "at, bottom", "ms", "{:.3f}"),
+	("time_top_ms", "at, top", "ms", "{:.3f}")
 )
 
 
@@ -35,7 +42,10 @@ class Record:
 		with open(os.path.join(folder, "summary.json")) as file:
 			summary = json.load(file)
 		self.folder, self.options, self.summary = folder, summary["options"], summary["models"]["rigid"]
-		self.series, self.broken = Series.read(os.path.join(folder, "rigid.csv")), broken_bonds.read(os.path.join(folder, "rigid_broken_bonds.csv"))
+		self.series, self.broken = (
+			Series.read(os.path.join(folder, "rigid.csv")),
+			broken_bonds.read(os.path.join(folder, "rigid_broken_bonds.csv")),
+		)
 
 	def curve(self, quantity, times):
 		"""A quantity at given times [s]: a column of the series, or "broken_percent" of all bonds."""
@@ -83,7 +93,9 @@ class Spread:
 
 	def texts(self, form):
 		"""Median, and range or nothing where there is none, as a table shows them."""
-		median, low, high = (form.format(float(v)).replace("-", "−") for v in (self.median, self.low, self.high))
+		median, low, high = (
+			form.format(float(v)).replace("-", "−") for v in (self.median, self.low, self.high)
+		)
 		return median, "" if low == high else f"{low}{' to ' if '+' in form else '–'}{high}"
 
 	def text(self, form):
@@ -126,7 +138,9 @@ def write_curves(group, path, points=501):
 	times = np.linspace(0, group.end, points)
 	units = {"time": "s"}
 	columns = {"time": times}
-	for quantity, unit in (("strain", "-"), ("stress", "Pa"), ("force_bottom", "N"), ("force_top", "N"), ("broken_percent", "%")):
+	for quantity, unit in (
+		("strain", "-"), ("stress", "Pa"), ("force_bottom", "N"), ("force_top", "N"), ("broken_percent", "%")
+	):
 		spread = group.curve(quantity, times)
 		for part in ("median", "low", "high"):
 			units[f"{quantity}_{part}"], columns[f"{quantity}_{part}"] = unit, getattr(spread, part)
@@ -149,36 +163,101 @@ class Claim:
 
 
 def claims(groups):
-	"""The paper's statements beside these groups, of which those of kind "paper" count; others are used where they are there."""
+	"""The paper's statements beside these groups, of which those of kind "paper" count;
+	others are used where they are there."""
 	paper = [group for group in groups if group.kind == "paper"]
 	first = min(group.stiffness for group in paper)
 	base = [group for group in paper if group.stiffness == first]
 	strengths, moduli = (_over(paper, name) for name in ("ucs_MPa", "young_GPa"))
 	ends, peaks = (_over(paper, name) for name in ("broken_at_end_percent", "broken_at_peak_percent"))
-	times = [Spread.of([record.figures()[name] / 1e3 / RECORD for group in paper for record in group.records]) for name in ("time_bottom_ms", "time_top_ms")]
-	ratio = Spread.of([100 * (record.figures()["force_top_kN"] / record.figures()["force_bottom_kN"] - 1) for group in paper for record in group.records])
+	times = [
+		Spread.of([record.figures()[name] / 1e3 / RECORD for group in paper for record in group.records])
+		for name in ("time_bottom_ms", "time_top_ms")
+	]
+	ratio = Spread.of(
+		[
+			100 * (record.figures()["force_top_kN"] / record.figures()["force_bottom_kN"] - 1)
+			for group in paper
+			for record in group.records
+		]
+	)
 	rows = [
-		Claim("strength (UCS)", f"{_range(UCS_CLAIMED)} MPa", f"{strengths.text('{:.0f}')} MPa", _twice(strengths, UCS_CLAIMED, "MPa")),
-		Claim("Young's modulus", f"{_range(YOUNG_CLAIMED)} GPa", f"{moduli.text('{:.0f}')} GPa", _twice(moduli, YOUNG_CLAIMED, "GPa")),
-		Claim("bonds broken at the peak", "a significant fraction", f"{peaks.text('{:.0f}')} %", "of all bonds"),
-		Claim("bonds broken after the peak", f"{_range(BROKEN_CLAIMED)} %", f"{ends.text('{:.0f}')} %", f"at the end, {1e3 * min(g.end for g in paper):.2f} ms"),
-		Claim("largest force on the bottom wall", "between 15 000 and 20 000 increments", times[0].text("{:.0f}"), "counted in records, every 10 steps of 1 ns"),
+		Claim(
+			"strength (UCS)",
+			f"{_range(UCS_CLAIMED)} MPa",
+			f"{strengths.text('{:.0f}')} MPa",
+			_twice(strengths, UCS_CLAIMED, "MPa"),
+		),
+		Claim(
+			"Young's modulus",
+			f"{_range(YOUNG_CLAIMED)} GPa",
+			f"{moduli.text('{:.0f}')} GPa",
+			_twice(moduli, YOUNG_CLAIMED, "GPa"),
+		),
+		Claim(
+			"bonds broken at the peak",
+			"a significant fraction",
+			f"{peaks.text('{:.0f}')} %",
+			"of all bonds",
+		),
+		Claim(
+			"bonds broken after the peak",
+			f"{_range(BROKEN_CLAIMED)} %",
+			f"{ends.text('{:.0f}')} %",
+			f"at the end, {1e3 * min(g.end for g in paper):.2f} ms",
+		),
+		Claim(
+			"largest force on the bottom wall",
+			"between 15 000 and 20 000 increments",
+			times[0].text("{:.0f}"),
+			"counted in records, every 10 steps of 1 ns",
+		),
 		Claim("largest force on the top wall", "at bigger increments", times[1].text("{:.0f}"), "likewise"),
-		Claim("the same, over that on the bottom wall", "about 25 % more", f"{ratio.text('{:+.1f}')} %", "the paper does not say what its 25 % are counted from"),
+		Claim(
+			"the same, over that on the bottom wall",
+			"about 25 % more",
+			f"{ratio.text('{:+.1f}')} %",
+			"the paper does not say what its 25 % are counted from",
+		),
 	]
 	if len({group.stiffness for group in paper}) > 1:
 		said = "force slightly larger at the bottom, by about 25 % at the top"
-		rows.append(Claim("walls 2 % stiffer", said, _stiffer(paper), "medians of the largest forces, bottom and top"))
+		rows.append(
+			Claim(
+				"walls 2 % stiffer",
+				said,
+				_stiffer(paper),
+				"medians of the largest forces, bottom and top",
+			)
+		)
 	if len(base) > 1:
-		shares = "; ".join(f"{g.range_text}: {g.spread('broken_at_end_percent').text('{:.0f}')} %" for g in base)
-		rows.append(Claim("larger spheres", "less intact after the peak", shares, f"bonds broken at the end, K = {first / 1e9:g} GPa"))
+		shares = "; ".join(
+			f"{g.range_text}: {g.spread('broken_at_end_percent').text('{:.0f}')} %" for g in base
+		)
+		rows.append(
+			Claim(
+				"larger spheres",
+				"less intact after the peak",
+				shares,
+				f"bonds broken at the end, K = {first / 1e9:g} GPa",
+			)
+		)
 	waves = Spread.of([record.wave_ratio for group in paper for record in group.records])
-	return rows + [Claim("wave speed over that of a wall", "about 2000", waves.text("{:.0f}"), "√(E/ρ), with the sample's modulus and the masses of the test")]
+	return rows + [
+		Claim(
+			"wave speed over that of a wall",
+			"about 2000",
+			waves.text("{:.0f}"),
+			"√(E/ρ), with the sample's modulus and the masses of the test",
+		)
+	]
 
 
 def change(group, base, name):
 	"""Change of a figure from a base group, packing by packing, as a share: :class:`Spread`."""
-	return Spread.of([new.figures()[name] / old.figures()[name] - 1 for new, old in zip(group.records, base.records)])
+	return Spread.of(
+		[new.figures()[name] / old.figures()[name] - 1 for new, old in zip(group.records, base.records)]
+	)
 
 
 def _over(groups, name):
@@ -190,7 +269,10 @@ def _range(claimed):
 
 
 def _twice(spread, claimed, unit):
-	return f"by eq. 9, {place(spread, claimed)}; divided by A {(2 * spread).text('{:.0f}')} {unit}, {place(2 * spread, claimed)}"
+	return (
+		f"by eq. 9, {place(spread, claimed)}; divided by A {(2 * spread).text('{:.0f}')} {unit}, "
+		f"{place(2 * spread, claimed)}"
+	)
 
 
 def place(spread, claimed):
@@ -203,9 +285,15 @@ def place(spread, claimed):
 
 
 def _stiffer(paper):
-	soft, stiff = (sorted((g for g in paper if g.stiffness == k), key=lambda g: g.radii) for k in sorted({g.stiffness for g in paper}))
+	soft, stiff = (
+		sorted((g for g in paper if g.stiffness == k), key=lambda g: g.radii)
+		for k in sorted({g.stiffness for g in paper})
+	)
 	parts = []
 	for one, two in zip(soft, stiff):
-		grown = [100 * (two.spread(name).median / one.spread(name).median - 1) for name in ("force_bottom_kN", "force_top_kN")]
+		grown = [
+			100 * (two.spread(name).median / one.spread(name).median - 1)
+			for name in ("force_bottom_kN", "force_top_kN")
+		]
 		parts.append(f"{one.range_text}: {grown[0]:+.1f} %, {grown[1]:+.1f} %")
 	return "; ".join(parts).replace("-", "−")

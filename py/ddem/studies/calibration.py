@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Calibration: parameters of a model tuned until what is measured on it meets its targets. Needs no YADE; the model is any function.
+"""Calibration: parameters of a model tuned until what is measured on it meets its targets. Needs no YADE;
+the model is any function.
 
 ::
 
@@ -11,18 +12,19 @@
 
 	with Bench(measure, path="out/evaluations.jsonl") as bench:
 		outcome = Calibration(
-			[Parameter("young", 50e9, 5e9, 500e9, {"young": 1}), Parameter("cohesion", 50e6, 5e6, 500e6, {"ucs": 1})],
-			[Target("young", 40e9, 0.02), Target("ucs", 60e6, 0.02)], bench,
+			[Parameter("young", 50e9, 5e9, 500e9, {"young": 1}), Parameter("cohesion",
+			50e6, 5e6, 500e6, {"ucs": 1})], [Target("young", 40e9, 0.02), Target("ucs", 60e6, 0.02)], bench,
 		).run()
 	print(outcome.reached, outcome.best.values, outcome.why)
 
-Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is an elasticity
-d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of its bonds" needs no evaluation. So the search
-starts with steps by the scaling laws of the parameters, as long as each at least halves the largest miss. Then elasticities are measured by finite
-differences, all at the same time, and a response surface takes over (Box and Wilson 1951): a plane through all points so far, near ones counting more, leads
-to the next point by scipy's bounded least squares. Breaking of bonds is chaotic: neighbouring parameters give strengths that differ by a per cent or two. So
-steps of finite differences are large, and planes average over what scatters where a Jacobian or a simplex would follow it. The search stops at the first
-point that meets all targets.
+Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is
+an elasticity d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of
+its bonds" needs no evaluation. So the search starts with steps by the scaling laws of the parameters, as long as each
+at least halves the largest miss. Then elasticities are measured by finite differences, all at the same time, and
+a response surface takes over (Box and Wilson 1951): a plane through all points so far, near ones counting more, leads
+to the next point by scipy's bounded least squares. Breaking of bonds is chaotic: neighbouring parameters give strengths
+that differ by a per cent or two. So steps of finite differences are large, and planes average over what scatters where
+a Jacobian or a simplex would follow it. The search stops at the first point that meets all targets.
 """
 import itertools
 import math
@@ -34,13 +36,17 @@ from scipy.optimize import lsq_linear
 
 from .evaluations import EvaluationError, OutOfBudget, Point
 
-DIGITS = 6  #: significant digits of parameters that are tried: more would say nothing, and keep a repeated start from recognising them
+#: significant digits of parameters that are tried: more would say nothing,
+#: and keep a repeated start from recognising them
+DIGITS = 6
 _HALF = 0.5  # a step that leaves more than this of what was missed is a poor one
 _NOTHING = 0.05  # elasticities below it do not count
-_FAR = 2.0  # two targets answer alike if their misses can only be brought together by a larger change of the parameters' logarithms
+# two targets answer alike if their misses can only be brought together by a larger change of the parameters' logarithms
+_FAR = 2.0
 _NEAR = 0.01  # a parameter this close to a bound, in its logarithm, has hit it
 _SMALLEST_STEP = 2e-3  # a step of parameters below it leads nowhere, far below what finite differences see
-_RADIUS = 0.7  # of steps by the response surface: no parameter changes by more than a factor of two; less where a point failed
+# of steps by the response surface: no parameter changes by more than a factor of two; less where a point failed
+_RADIUS = 0.7
 _PATIENCE = 8  # so many steps in a row that bring it less than a tenth closer end the search
 _PASSES = 3  # a model is made anew around the point to which it leads
 _SCATTER = 0.01  # of measures between neighbouring points, expected when points are weighted
@@ -50,7 +56,8 @@ _SPARE = 2  # points more than a plane needs, before their scatter about it says
 
 @dataclass(frozen=True)
 class Parameter:
-	"""A positive parameter to tune, between bounds. *laws* are the elasticities that scaling laws give it: measure -> d ln(measure)/d ln(parameter)."""
+	"""A positive parameter to tune, between bounds. *laws* are the elasticities that scaling laws give it:
+	measure -> d ln(measure)/d ln(parameter)."""
 	name: str
 	start: float
 	lower: float
@@ -59,11 +66,20 @@ class Parameter:
 
 	def __post_init__(self):
 		if not all(math.isfinite(value) and value > 0 for value in (self.start, self.lower, self.upper)):
-			raise ValueError(f"parameter {self.name}: start {self.start}, bounds {self.lower} and {self.upper} must be positive and finite")
+			raise ValueError(
+				f"parameter {self.name}: start {self.start}, bounds {self.lower} and {self.upper} "
+				"must be positive and finite"
+			)
 		if not self.lower < self.upper:
-			raise ValueError(f"parameter {self.name}: the lower bound, {self.lower:g}, must be below the upper one, {self.upper:g}")
+			raise ValueError(
+				f"parameter {self.name}: the lower bound, {self.lower:g}, must be below the upper "
+				f"one, {self.upper:g}"
+			)
 		if not self.lower <= self.start <= self.upper:
-			raise ValueError(f"parameter {self.name}: the start, {self.start:g}, must lie between the bounds, {self.lower:g} and {self.upper:g}")
+			raise ValueError(
+				f"parameter {self.name}: the start, {self.start:g}, must lie between the bounds, "
+				f"{self.lower:g} and {self.upper:g}"
+			)
 
 
 @dataclass(frozen=True)
@@ -77,7 +93,10 @@ class Target:
 		if not (math.isfinite(self.value) and self.value > 0):
 			raise ValueError(f"target {self.name} = {self.value} must be positive and finite")
 		if not 0 < self.tolerance < 1:
-			raise ValueError(f"target {self.name}: tolerance = {self.tolerance} must be a part of the target, between 0 and 1 (0.02 for 2 %)")
+			raise ValueError(
+				f"target {self.name}: tolerance = {self.tolerance} must be a part of the target, "
+				"between 0 and 1 (0.02 for 2 %)"
+			)
 
 	def miss(self, point):
 		"""Relative distance of a point from the target [-]."""
@@ -100,8 +119,12 @@ class Outcome:
 	best: Point  # the point closest to the targets; None when none could be measured
 	why: list  # sentences on why it ended
 	steps: list  # all of :class:`Step`, in order
-	elasticities: np.ndarray  # d ln(target)/d ln(parameter) around the best point, a row a target, a column a parameter; None when not measured
-	errors: np.ndarray  # their standard errors, from the scatter of all points about the response surface; NaN where there are too few points
+	# d ln(target)/d ln(parameter) around the best point, a row a target, a column a parameter;
+	# None when not measured
+	elasticities: np.ndarray
+	# their standard errors, from the scatter of all points about the response surface;
+	# NaN where there are too few points
+	errors: np.ndarray
 	parameters: list
 	targets: list
 	seconds: float  # of the search [s]
@@ -127,11 +150,18 @@ class Calibration:
 			if len(set(names)) < len(names):
 				raise ValueError(f"a {kind} is given twice: {', '.join(names)}")
 		if not 0 < step < 1:
-			raise ValueError(f"step = {step} of finite differences must be a part of the parameters, between 0 and 1")
-		self.parameters, self.targets, self.bench, self.step, self.sensitivities = list(parameters), list(targets), bench, step, sensitivities
+			raise ValueError(
+				f"step = {step} of finite differences must be a part of the parameters, between 0 and 1"
+			)
+		self.parameters, self.targets, self.bench, self.step, self.sensitivities = (
+			list(parameters), list(targets), bench, step, sensitivities
+		)
 		self.tell = tell or (lambda step: None)
-		self.steps, self.best, self._around = [], None, None  # _around: log-parameters where finite differences were taken last
-		self._lower, self._upper = (np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper"))
+		# _around: log-parameters where finite differences were taken last
+		self.steps, self.best, self._around = [], None, None
+		self._lower, self._upper = (
+			np.array([math.log(getattr(p, name)) for p in self.parameters]) for name in ("lower", "upper")
+		)
 
 	def run(self):
 		"""Search, and return an :class:`Outcome`; a target that is out of reach is no error."""
@@ -149,9 +179,14 @@ class Calibration:
 				self._differences(self._logs(self.best.values), stop=False)
 			except (OutOfBudget, EvaluationError) as error:
 				why.append(f"sensitivities could not be measured: {error}")
-		elasticities, errors = self.response(self._logs(self.best.values))[1:] if self._around is not None and self._spanned() else (None, None)
+		elasticities, errors = (
+			self.response(self._logs(self.best.values))[1:]
+			if self._around is not None and self._spanned()
+			else (None, None)
+		)
 		return Outcome(
-			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets, time.perf_counter() - begin,
+			reached, self.best, why, self.steps, elasticities, errors, self.parameters, self.targets,
+			time.perf_counter() - begin,
 			{} if self.best is None else self._bounds_hit(self._logs(self.best.values))
 		)
 
@@ -184,7 +219,10 @@ class Calibration:
 		while idle < _PATIENCE:
 			distance = self._rank(self.best)[1]
 			there, expected = self._aim(self._logs(self.best.values), radius, tolerances)
-			near = min(np.abs(self._logs(step.point.values) - there).max() for step in self.steps) < _SMALLEST_STEP
+			near = (
+				min(np.abs(self._logs(step.point.values) - there).max() for step in self.steps)
+				< _SMALLEST_STEP
+			)
 			if near and np.abs(expected / tolerances).max() > 1:
 				return  # it leads nowhere new, and not to the targets either
 			known = len(self.steps)
@@ -196,7 +234,8 @@ class Calibration:
 			idle = 0 if self._rank(self.best)[1] < 0.9 * distance else idle + 1
 
 	def _aim(self, x, radius, tolerances):
-		"""Log-parameters within *radius* of *x* and the bounds where the response, modelled around that place, comes closest to the targets; and its misses."""
+		"""Log-parameters within *radius* of *x* and the bounds where the response, modelled around that place,
+		comes closest to the targets; and its misses."""
 		there = x
 		for _ in range(_PASSES):
 			misses, slopes, _ = self.response(there)
@@ -207,10 +246,11 @@ class Calibration:
 		return there, expected
 
 	def response(self, x):
-		"""Logarithmic misses at log-parameters *x*, elasticities around it, and their standard errors, of the plane through all points in the sense of weighted
-		least squares.
+		"""Logarithmic misses at log-parameters *x*, elasticities around it, and their standard errors, of the
+		plane through all points in the sense of weighted least squares.
 
-		A point counts less the farther it is: what bends away from the plane grows with the square of the distance, what scatters does not.
+		A point counts less the farther it is: what bends away from the plane grows with the square of the
+		distance, what scatters does not.
 		"""
 		points = [step.point for step in self.steps if not step.point.error]
 		away = np.array([self._logs(point.values) for point in points]) - x
@@ -227,16 +267,19 @@ class Calibration:
 
 	def _far_from_differences(self):
 		"""Whether no finite differences were taken near the best point."""
-		return self._around is None or np.abs(self._logs(self.best.values) - self._around).max() > 1.5 * math.log1p(self.step)
+		return self._around is None or np.abs(
+			self._logs(self.best.values) - self._around
+		).max() > 1.5 * math.log1p(self.step)
 
 	def _spanned(self):
-		"""Whether points differ in every parameter, by more than rounding, so that a plane through them has all slopes."""
+		"""Whether points differ in every parameter, by more than rounding,
+		so that a plane through them has all slopes."""
 		logs = np.array([self._logs(step.point.values) for step in self.steps if not step.point.error])
 		return np.linalg.matrix_rank(logs - logs.mean(axis=0), tol=1e-3) == len(self.parameters)
 
 	def _differences(self, x, stop=True):
-		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same time, to the other side where a bound is near or
-		a point fails."""
+		"""Measure the elasticities around log-parameters *x*: one further point a parameter, all at the same
+		time, to the other side where a bound is near or a point fails."""
 		base = self._look([x], "search", stop)[0]
 		x, width = self._logs(base.values), math.log1p(self.step)
 		signs = [1 if x[k] + width <= self._upper[k] else -1 for k in range(len(x))]
@@ -247,28 +290,50 @@ class Calibration:
 			points[k] = self._look([x - np.eye(len(x))[k] * signs[k] * width], "sensitivity", stop, [k])[0]
 			if points[k].error:
 				raise EvaluationError(
-					f"evaluations on both sides of {self.parameters[k].name} = {base.values[self.parameters[k].name]:g} failed: {points[k].error}"
+					"evaluations on both sides of "
+					f"{self.parameters[k].name} = {base.values[self.parameters[k].name]:g} "
+					f"failed: {points[k].error}"
 				)
 	# --- points
 	def _look(self, logs, purpose, stop=True, columns=None):
-		"""Measure points given as log-parameters; raises _Reached at one that meets all targets, unless told not to *stop*."""
-		values = [{p.name: min(max(_rounded(value), p.lower), p.upper) for p, value in zip(self.parameters, np.exp(x).tolist())} for x in logs]
+		"""Measure points given as log-parameters; raises _Reached at one that meets all targets,
+		unless told not to *stop*."""
+		values = [
+			{
+				p.name: min(max(_rounded(value), p.lower), p.upper)
+				for p, value in zip(self.parameters, np.exp(x).tolist())
+			}
+			for x in logs
+		]
 		seen = [step.point for step in self.steps]
 		points = self.bench.measure(values)
 		for k, point in enumerate(points):
 			if not point.error:
 				missing = [target.name for target in self.targets if target.name not in point.measured]
 				if missing:
-					raise ValueError(f"nothing measures the target {missing[0]}; there are {', '.join(point.measured) or 'no measures'}")
+					raise ValueError(
+						f"nothing measures the target {missing[0]}; there are "
+						f"{', '.join(point.measured) or 'no measures'}"
+					)
 				if not all(point.measured[target.name] > 0 for target in self.targets):
 					points[k] = point = Point(
-						point.values, {}, {}, "a measure is not positive: " + ", ".join(f"{n} = {v:g}" for n, v in point.measured.items())
+						point.values, {}, {},
+						"a measure is not positive: "
+						+ ", ".join(f"{n} = {v:g}" for n, v in point.measured.items())
 					)
 			if any(point.values == other.values for other in seen):
 				continue  # told already
-			parameter = self.parameters[(columns or range(len(points)))[k]].name if purpose == "sensitivity" else None
+			parameter = (
+				self.parameters[(columns or range(len(points)))[k]].name
+				if purpose == "sensitivity"
+				else None
+			)
 			self.steps.append(Step(len(self.steps) + 1, purpose, point, parameter))
-			if not point.error and (self.best is None or self._rank(point) < self._rank(self.best)) and stop:
+			if (
+				not point.error
+				and (self.best is None or self._rank(point) < self._rank(self.best))
+				and stop
+			):
 				self.best = point
 			self.tell(self.steps[-1])
 		if stop and self.best and self._worst(self.best) <= 1:
@@ -283,8 +348,11 @@ class Calibration:
 		return np.log([point.measured[target.name] / target.value for target in self.targets])
 
 	def _rank(self, point):
-		"""Points that meet all targets come first, then those whose distances over tolerances have the smallest sum of squares."""
-		return self._worst(point) > 1, math.hypot(*(target.miss(point) / target.tolerance for target in self.targets))
+		"""Points that meet all targets come first, then those whose distances over tolerances have the
+		smallest sum of squares."""
+		return self._worst(point) > 1, math.hypot(
+			*(target.miss(point) / target.tolerance for target in self.targets)
+		)
 
 	def _worst(self, point):
 		"""The largest distance from a target over its tolerance; all targets are met up to 1."""
@@ -296,7 +364,9 @@ class Calibration:
 		hit = {}
 		for k, parameter in enumerate(self.parameters):
 			if min(x[k] - self._lower[k], self._upper[k] - x[k]) < _NEAR:
-				hit[parameter.name] = "lower" if x[k] - self._lower[k] < self._upper[k] - x[k] else "upper"
+				hit[parameter.name] = (
+					"lower" if x[k] - self._lower[k] < self._upper[k] - x[k] else "upper"
+				)
 		return hit
 
 	def _explain(self):
@@ -311,17 +381,31 @@ class Calibration:
 			for name, side in self._bounds_hit(there).items():
 				k = [p.name for p in self.parameters].index(name)
 				if np.abs(slopes[unmet, k]).max() > _NOTHING:
-					why.append(f"the {side} bound of {name}, {getattr(self.parameters[k], side):g}, keeps it from going further")
+					why.append(
+						f"the {side} bound of {name}, {getattr(self.parameters[k], side):g}, "
+						"keeps it from going further"
+					)
 		for i in missed:
 			if size[i] < _NOTHING:
-				why.append(f"no tuned parameter moves {self.targets[i].name} (all elasticities are below {_NOTHING:g}): tune another one")
+				why.append(
+					f"no tuned parameter moves {self.targets[i].name} (all elasticities are below "
+					f"{_NOTHING:g}): tune another one"
+				)
 		for a, b in itertools.combinations(np.flatnonzero(size >= _NOTHING), 2):
-			if {a, b} & set(missed) and abs(misses[a] - misses[b]) > _FAR * np.linalg.norm(slopes[a] - slopes[b]):
+			if {a, b} & set(missed) and abs(misses[a] - misses[b]) > _FAR * np.linalg.norm(
+				slopes[a] - slopes[b]
+			):
 				names = f"{self.targets[a].name} and {self.targets[b].name}"
-				why.append(f"{names} answer alike to the tuned parameters, so they cannot be met independently: tune another parameter as well")
+				why.append(
+					f"{names} answer alike to the tuned parameters, so they cannot be met "
+					"independently: tune another parameter as well"
+				)
 		return why or [
-			"no step brought it closer: neighbouring parameters may differ by more than the tolerance, as where breaking is chaotic; average several seeds, "
-			"allow a larger tolerance, or start elsewhere"
+			(
+				"no step brought it closer: neighbouring parameters may differ by more than the "
+				"tolerance, as where breaking is chaotic; average several seeds, allow a larger "
+				"tolerance, or start elsewhere"
+			)
 		]
 
 

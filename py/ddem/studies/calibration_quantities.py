@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""What can be tuned in each model and what is measured: names, units for people, scaling laws, starts and bounds. Needs no YADE."""
+"""What can be tuned in each model and what is measured: names, units for people, scaling laws, starts and bounds.
+Needs no YADE."""
 import math
 from dataclasses import dataclass, field
 
@@ -34,7 +35,13 @@ class Tunable(Quantity):
 
 MEASURES = {
 	q.name: q for q in (
-		Quantity("young", "E", "GPa", 1e9, "Young's modulus: slope of the compression test between 20 and 60 % of the strength"),
+		Quantity(
+			"young",
+			"E",
+			"GPa",
+			1e9,
+			"Young's modulus: slope of the compression test between 20 and 60 % of the strength",
+		),
 		Quantity("ucs", "UCS", "MPa", 1e6, "strength in compression: largest stress"),
 		Quantity("tensile", "σ_t", "MPa", 1e6, "strength in tension: largest stress of the tension test"),
 	)
@@ -46,19 +53,53 @@ TUNABLES = {
 		t.name: t for t in (
 			Tunable("young", "E", "GPa", 1e9, "Young's modulus of the bonds", {"young": 1.0}),
 			Tunable("poisson", "ν", "", 1, "Poisson's ratio of the bonds", span=(0.01, 0.49)),
-			Tunable("cohesion", "C", "MPa", 1e6, "shear strength of the bonds without normal stress", _STRENGTHS),
-			Tunable("bondFrictionAngle", "φ", "°", math.radians(1), "friction angle of the bonds", span=(math.radians(5), math.radians(75))),
-			Tunable("tensileStrength", "f_t", "MPa", 1e6, "tension cut-off of the bonds; above C/tan φ it has no effect"),
+			Tunable(
+				"cohesion",
+				"C",
+				"MPa",
+				1e6,
+				"shear strength of the bonds without normal stress",
+				_STRENGTHS,
+			),
+			Tunable(
+				"bondFrictionAngle",
+				"φ",
+				"°",
+				math.radians(1),
+				"friction angle of the bonds",
+				span=(math.radians(5), math.radians(75)),
+			),
+			Tunable(
+				"tensileStrength",
+				"f_t",
+				"MPa",
+				1e6,
+				"tension cut-off of the bonds; above C/tan φ it has no effect",
+			),
 		)
 	},
 	"deformable": {
 		t.name: t for t in (
-			Tunable("young", "E", "GPa", 1e9, "Young's modulus of the triangles: B and μ in a fixed ratio", {"young": 1.0}),
+			Tunable(
+				"young",
+				"E",
+				"GPa",
+				1e9,
+				"Young's modulus of the triangles: B and μ in a fixed ratio",
+				{"young": 1.0},
+			),
 			Tunable("poisson", "ν", "", 1, "Poisson's ratio of the triangles", span=(0.01, 0.49)),
 			Tunable("bulk", "B", "GPa", 1e9, "bulk modulus", {"young": 0.5}),
 			Tunable("shear", "μ", "GPa", 1e9, "shear modulus", {"young": 0.5}),
 			Tunable("strength", "σ_p0", "MPa", 1e6, "strength in the flow rule", _STRENGTHS),
-			Tunable("friction", "q_0", "", 1, "friction of the flow rule without pressure", span=(0.05, 0.95)),
+			Tunable(
+				"friction",
+				"q_0",
+				"",
+				1,
+				"friction of the flow rule without pressure",
+				span=(0.05, 0.95),
+			),
 			Tunable("fractureEnergy", "G_f", "kJ/m³", 1e3, "mean fracture energy"),
 			Tunable("flowFactor", "Λ_0", "", 1, "factor of the flow rate"),
 			Tunable("damageExponent", "n_f", "", 1, "exponent of the damage parameter"),
@@ -84,7 +125,8 @@ def usual(model, targets):
 
 
 def starts(model, targets, material):
-	"""Starting values by scaling laws: the material's own moduli or strengths, all multiplied by one number so that they suit the targets.
+	"""Starting values by scaling laws: the material's own moduli or strengths, all multiplied by one number so
+	that they suit the targets.
 
 	:param targets: measure -> value [Pa]
 	:param material: attribute -> value of the material as it is
@@ -95,7 +137,8 @@ def starts(model, targets, material):
 	if "young" in targets:
 		stiffer = targets["young"] / material["young"]
 		start.update((name, stiffer * material[name]) for name in moduli)
-	# the strengths of Zubelewicz's concrete are about half and a fourteenth of σ_p0, those of bonded spheres about C and two fifths of it
+	# the strengths of Zubelewicz's concrete are about half and a fourteenth of σ_p0, those of bonded spheres
+	# about C and two fifths of it
 	share = {"rigid": {"ucs": 1.0, "tensile": 0.4}, "deformable": {"ucs": 0.5, "tensile": 0.07}}[model]
 	for target in ("ucs", "tensile"):
 		if target in targets:
@@ -118,7 +161,10 @@ def parameters(model, names, start, bounds=None):
 		if not (name in start and math.isfinite(start[name])):
 			raise ValueError(f"{name} has no finite value to start from; give one")
 	if {"young", "poisson"} & set(names) and {"bulk", "shear"} & set(names):
-		raise ValueError("young and poisson on one side, bulk and shear on the other, say the same twice: tune only one of the pairs")
+		raise ValueError(
+			"young and poisson on one side, bulk and shear on the other, say the same twice: tune only "
+			"one of the pairs"
+		)
 	made = []
 	for name in names:
 		span = (bounds or {}).get(name) or known[name].span or (start[name] / _REACH, start[name] * _REACH)

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""A campaign: many runs of a script with different options, each in a YADE and a folder of its own, some at the same time; what is finished is kept.
+"""A campaign: many runs of a script with different options, each in a YADE and a folder of its own,
+some at the same time; what is finished is kept.
 
 ::
 
@@ -8,7 +9,8 @@
 	for case, folder in runs.run().items():
 		...
 
-The script needs an option --out for its folder, and must leave a summary.json there with the versions of commandline.versions().
+The script needs an option --out for its folder, and must leave a summary.json there with the versions
+of commandline.versions().
 """
 import concurrent.futures
 import json
@@ -53,10 +55,15 @@ class Campaign:
 	def __init__(self, script, cases, folder, jobs=1, report=lambda case, folder, seconds: None, yade=None):
 		names = [case.name for case in cases]
 		if len(set(names)) < len(names):
-			raise ValueError(f"two cases have the same name: {', '.join(sorted(name for name in set(names) if names.count(name) > 1))}")
+			raise ValueError(
+				"two cases have the same name: "
+				f"{', '.join(sorted(name for name in set(names) if names.count(name) > 1))}"
+			)
 		if jobs < 1:
 			raise ValueError(f"jobs = {jobs} must be at least 1")
-		self.script, self.cases, self.folder, self.jobs, self.report = os.path.abspath(script), list(cases), str(folder), jobs, report
+		self.script, self.cases, self.folder, self.jobs, self.report = (
+			os.path.abspath(script), list(cases), str(folder), jobs, report
+		)
 		self.processes = YadeProcesses(yade)
 		self._current = {"YADE": config.version, "plugin": plugin()}
 
@@ -102,7 +109,15 @@ class Campaign:
 			pool.shutdown()
 		if failures:
 			more = [f"and {len(failures) - _SHOWN} more"] if len(failures) > _SHOWN else []
-			raise Failed("\n".join([f"{len(failures)} of {len(self.cases)} runs failed", *sorted(failures)[:_SHOWN], *more]))
+			raise Failed(
+				"\n".join(
+					[
+						f"{len(failures)} of {len(self.cases)} runs failed",
+						*sorted(failures)[:_SHOWN],
+						*more,
+					]
+				)
+			)
 		return {case: self.folder_of(case) for case in self.cases}
 
 	def _one(self, case):

@@ -63,7 +63,8 @@ def seed(text):
 def script_parser(name, description):
 	"""Parser of scripts/*name*.py, in whose help every option has its default."""
 	return argparse.ArgumentParser(
-		prog=f"scripts/ddem run scripts/{name}.py", usage="%(prog)s [options]", description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+		prog=f"scripts/ddem run scripts/{name}.py", usage="%(prog)s [options]", description=description,
+		formatter_class=argparse.ArgumentDefaultsHelpFormatter,
 		allow_abbrev=False
 	)
 
@@ -71,14 +72,22 @@ def script_parser(name, description):
 def add_files(parser, name, what="ParaView files"):
 	"""Add the options --vtk, of which *what* says what it writes, and --out, by default out/*name*."""
 	parser.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help=what)
-	parser.add_argument("--out", default=os.path.join("out", name), metavar="DIR", help="folder for all files, made when missing")
+	parser.add_argument(
+		"--out",
+		default=os.path.join("out", name),
+		metavar="DIR",
+		help="folder for all files, made when missing",
+	)
 
 
 def require_between(parser, option, values, low, high):
 	"""Complain about an option with a value (or a value in a sequence) out of bounds."""
 	for value in np.atleast_1d(values):
 		if not low <= value <= high:
-			parser.error(f"argument {option}: {value:g} must " + (f"lie between {low:g} and {high:g}" if high < math.inf else f"be at least {low:g}"))
+			parser.error(
+				f"argument {option}: {value:g} must "
+				+ (f"lie between {low:g} and {high:g}" if high < math.inf else f"be at least {low:g}")
+			)
 
 
 def require_writable(parser, option, folder):
@@ -91,7 +100,8 @@ def require_writable(parser, option, folder):
 
 
 def restart(threads):
-	"""Start the running script again, from its beginning, in a YADE of so many OpenMP threads, where this one has another number: it is fixed when YADE starts.
+	"""Start the running script again, from its beginning, in a YADE of so many OpenMP threads, where this one has
+	another number: it is fixed when YADE starts.
 
 	Returns where there is nothing to do.
 
@@ -100,15 +110,25 @@ def restart(threads):
 	if threads == O.numThreads:
 		return
 	if os.environ.get(_RESTARTED):
-		raise RuntimeError(f"YADE runs on {O.numThreads} threads, not on {threads}; something limits them, such as OMP_THREAD_LIMIT")
+		raise RuntimeError(
+			f"YADE runs on {O.numThreads} threads, not on {threads}; something limits them, such as "
+			"OMP_THREAD_LIMIT"
+		)
 	program, *options = sys.yade_argv[:len(sys.yade_argv) - len(sys.argv)]
 	sys.stdout.flush()
-	shutil.rmtree(os.path.dirname(O.tmpFilename()), ignore_errors=True)  # this YADE's folder in /tmp, which it removes when it exits by itself
-	os.execve(shutil.which(program) or program, [program, *options, f"-j{threads}", *sys.argv], {**os.environ, _RESTARTED: "1"})  # the last -j counts
+	# this YADE's folder in /tmp, which it removes when it exits by itself
+	shutil.rmtree(os.path.dirname(O.tmpFilename()), ignore_errors=True)
+	# the last -j counts
+	os.execve(
+		shutil.which(program) or program,
+		[program, *options, f"-j{threads}", *sys.argv],
+		{**os.environ, _RESTARTED: "1"},
+	)
 
 
 def command(threads=None):
-	"""The command line that repeats this run; *threads* of the launcher, where the script has no option for them."""
+	"""The command line that repeats this run; *threads* of the launcher,
+	where the script has no option for them."""
 	launcher = ["--threads", str(threads)] if threads and threads > 1 else []
 	script = os.path.relpath(sys.argv[0])
 	return shlex.join([os.path.join(os.path.dirname(script), "ddem"), "run", *launcher, script, *sys.argv[1:]])
@@ -121,7 +141,12 @@ def plain(options):
 
 def versions(*modules):
 	"""Name -> version of YADE, the plugin's libraries (a hash of them), Python and *modules*."""
-	return {"YADE": yade.config.version, "plugin": plugin(), "Python": sys.version.split()[0], **{module.__name__: module.__version__ for module in modules}}
+	return {
+		"YADE": yade.config.version,
+		"plugin": plugin(),
+		"Python": sys.version.split()[0],
+		**{module.__name__: module.__version__ for module in modules},
+	}
 
 
 def plugin():

@@ -1,9 +1,12 @@
 # GPL v2 or later, see LICENSE.
-"""Evaluations of a model, several at a time, each written down when it is done: a repeated start does not repeat them. Needs no YADE.
+"""Evaluations of a model, several at a time, each written down when it is done: a repeated start does not repeat them.
+Needs no YADE.
 
-A *point* is a set of parameters. It is measured in one or several *cases* (kinds of test, seeds), each of which is an evaluation of its own::
+A *point* is a set of parameters. It is measured in one or several *cases* (kinds of test, seeds),
+each of which is an evaluation of its own::
 
-	with Bench(evaluate, cases=[{"seed": 1}, {"seed": 2}], settings={"specimen": "prism"}, path="out/evaluations.jsonl", jobs=2) as bench:
+	with Bench(evaluate, cases=[{"seed": 1}, {"seed": 2}], settings={"specimen": "prism"},
+	path="out/evaluations.jsonl", jobs=2) as bench:
 		first, second = bench.measure([{"young": 40e9}, {"young": 44e9}])
 		print(first.measured, second.error)
 
@@ -46,7 +49,8 @@ class Store:
 
 	def __init__(self, path=None):
 		self.path, self._lines, self._file = path, {}, None
-		self.unreadable = []  #: (number, reason) of lines that were not understood; their evaluations are made again
+		#: (number, reason) of lines that were not understood; their evaluations are made again
+		self.unreadable = []
 		if path is None:
 			return
 		os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
@@ -55,7 +59,9 @@ class Store:
 			fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 		except OSError:
 			self._file.close()
-			raise RuntimeError(f"{path} is in use by another calibration; wait for it, or choose another folder") from None
+			raise RuntimeError(
+				f"{path} is in use by another calibration; wait for it, or choose another folder"
+			) from None
 		self._read()
 
 	def get(self, key):
@@ -80,7 +86,8 @@ class Store:
 		self._file.seek(0)
 		text = self._file.read()
 		if text and not text.endswith(b"\n"):
-			self._file.write(b"\n")  # what comes next must not be glued to the rest of a line that was cut off
+			# what comes next must not be glued to the rest of a line that was cut off
+			self._file.write(b"\n")
 		for number, line in enumerate(text.splitlines(), 1):
 			if not line.strip():
 				continue
@@ -93,7 +100,14 @@ class Store:
 						raise ValueError("a measure is not finite")
 					self._lines[record["key"]] = record
 			except (ValueError, KeyError, TypeError, AttributeError) as error:
-				self.unreadable.append((number, str(error) if isinstance(error, ValueError) else f"{type(error).__name__} {error}"))
+				self.unreadable.append(
+					(
+						number,
+						str(error)
+						if isinstance(error, ValueError)
+						else f"{type(error).__name__} {error}",
+					)
+				)
 
 
 class Bench:
@@ -103,7 +117,8 @@ class Bench:
 		what the scene simulated, or raises; called in threads, so it should start a process for heavy work.
 		Its ``stop()``, where it has one, is called when the run is interrupted, and must end what is running.
 	:param cases: list of dicts that can be written as JSON, as {"test": "compression", "seed": 1}
-	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are not reused
+	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are
+		not reused
 	:param path: file of a :class:`Store`
 	:param jobs: evaluations at the same time
 	:param budget: no evaluation is started beyond this number of new ones; None: no limit
@@ -114,7 +129,13 @@ class Bench:
 			raise ValueError("a bench needs at least one case")
 		if not (isinstance(jobs, int) and jobs >= 1):
 			raise ValueError(f"jobs = {jobs!r} must be a whole number, 1 or more")
-		self.evaluate, self.cases, self.settings, self.jobs, self.budget = evaluate, [dict(case) for case in cases], dict(settings or {}), jobs, budget
+		self.evaluate, self.cases, self.settings, self.jobs, self.budget = (
+			evaluate,
+			[dict(case) for case in cases],
+			dict(settings or {}),
+			jobs,
+			budget,
+		)
 		self.store = Store(path)
 		self.ran = self.failed = 0  #: evaluations made now, and those that failed among them
 		self._made, self._reused = set(), set()
@@ -138,7 +159,11 @@ class Bench:
 
 		:raises OutOfBudget: it would take more new evaluations than are left; none was started
 		"""
-		jobs = {fingerprint(self.settings, values, case): (values, case) for values in points for case in self.cases}
+		jobs = {
+			fingerprint(self.settings, values, case): (values, case)
+			for values in points
+			for case in self.cases
+		}
 		known = {key: self.store.get(key) for key in jobs}
 		missing = {key: job for key, job in jobs.items() if known[key] is None}
 		if self.budget is not None and self.ran + len(missing) > self.budget:
@@ -162,10 +187,18 @@ class Bench:
 				self.store.add(record)
 				records[record["key"]] = record
 				self._made.add(record["key"])
-				self.ran, self.seconds, self.failed = self.ran + 1, self.seconds + record["seconds"], self.failed + (record["error"] is not None)
+				self.ran, self.seconds, self.failed = (
+					self.ran + 1,
+					self.seconds + record["seconds"],
+					self.failed + (record["error"] is not None),
+				)
 		except BaseException:
 			pool.shutdown(wait=False, cancel_futures=True)
-			done = [future for future, key in running.items() if key not in records and future.done() and not future.cancelled()]
+			done = [
+				future
+				for future, key in running.items()
+				if key not in records and future.done() and not future.cancelled()
+			]
 			getattr(self.evaluate, "stop", lambda: None)()
 			for future in done:
 				if future.exception() is None:
@@ -176,7 +209,10 @@ class Bench:
 		return records
 
 	def _one(self, key, values, case):
-		record = {"format": FORMAT, "key": key, "case": case, "parameters": values, "settings": self.settings, "measured": None, "error": None}
+		record = {
+			"format": FORMAT, "key": key, "case": case, "parameters": values, "settings": self.settings,
+			"measured": None, "error": None
+		}
 		start = time.perf_counter()
 		try:
 			answer = self.evaluate(dict(values), dict(case))
@@ -188,7 +224,11 @@ class Bench:
 			if EFFECTS in answer:
 				record[EFFECTS] = answer[EFFECTS]
 		except Exception as error:
-			record["error"] = f"{type(error).__name__}: {error}" if not isinstance(error, EvaluationError) else str(error)
+			record["error"] = (
+				f"{type(error).__name__}: {error}"
+				if not isinstance(error, EvaluationError)
+				else str(error)
+			)
 		record["seconds"] = round(time.perf_counter() - start, 3)
 		record["finished"] = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
 		return record
@@ -200,7 +240,10 @@ class Bench:
 		for record in records:
 			if record["error"] is not None:
 				where = ", ".join(f"{name} {value}" for name, value in record["case"].items())
-				return Point(values, {}, {}, f"{where}: {record['error']}" if where else record["error"], reused, seconds)
+				return Point(
+					values, {}, {}, f"{where}: {record['error']}" if where else record["error"],
+					reused, seconds
+				)
 		found = {}
 		for record in records:
 			for name, value in record["measured"].items():
@@ -225,4 +268,8 @@ def fingerprint(settings, values, case):
 
 
 def _deviation(samples, mean):
-	return math.sqrt(math.fsum((value - mean)**2 for value in samples) / (len(samples) - 1)) if len(samples) > 1 else None
+	return (
+		math.sqrt(math.fsum((value - mean)**2 for value in samples) / (len(samples) - 1))
+		if len(samples) > 1
+		else None
+	)

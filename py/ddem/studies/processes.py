@@ -9,7 +9,8 @@ import threading
 
 
 class YadeProcesses:
-	"""Runs scripts, each in a YADE of its own on one thread; to be called from several Python threads at the same time.
+	"""Runs scripts, each in a YADE of its own on one thread;
+	to be called from several Python threads at the same time.
 
 	:param yade: the program; None: the one that is running, or that is found in the path
 	"""
@@ -29,7 +30,10 @@ class YadeProcesses:
 			with self._lock:
 				if self._stopped:
 					raise Stopped("interrupted")
-				process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT, env=environment, start_new_session=True)
+				process = subprocess.Popen(
+					command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT,
+					env=environment, start_new_session=True
+				)
 				self._running.add(process)
 			try:
 				return process.wait()

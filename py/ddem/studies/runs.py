@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""The record of a finished test in compression or tension, as plain data: what files, tables and pictures are made from."""
+"""The record of a finished test in compression or tension, as plain data:
+what files, tables and pictures are made from."""
 import math
 from dataclasses import dataclass, field
 
@@ -36,7 +37,9 @@ class Run:
 	wall: float  # wall time of all steps with their recording [s]
 	busy: float  # processor time of the same, all threads together [s]
 	threads: int
-	series: Series  # time, strain, stress, force_top, force_bottom, damage, energy_… and energy_drift (what the book has too much) [SI]; loading counts positive
+	# time, strain, stress, force_top, force_bottom, damage, energy_… and energy_drift
+	# (what the book has too much) [SI]; loading counts positive
+	series: Series
 	snapshots: list  # of snapshots.TriangleSnapshot or SphereSnapshot, in order of time
 	engines: list  # (name, wall seconds, calls) in order
 	energy_error: float  # largest error of the energy book, see energy.EnergyBalance.largest [-]
@@ -65,7 +68,8 @@ class Run:
 		return sum(seconds for name, seconds, _ in self.engines if name != RECORDER) / self.steps
 
 	def energy(self, part):
-		"""One of :data:`ENERGY_PARTS`, or "input", over time [J]; None when the book has none of its entries."""
+		"""One of :data:`ENERGY_PARTS`, or "input", over time [J];
+		None when the book has none of its entries."""
 		sign, entries = (-1, EXTERNAL) if part == "input" else (1, ENERGY_PARTS[part])
 		found = [self.series[f"energy_{name}"] for name in entries if f"energy_{name}" in self.series.units]
 		return sign * sum(found) if found else None
@@ -105,7 +109,10 @@ class Run:
 			"effects": self.effects,
 			**self.extra,
 		}
-		return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in figures.items()}
+		return {
+			name: None if isinstance(value, float) and not math.isfinite(value) else value
+			for name, value in figures.items()
+		}
 
 
 def cost_ratios(runs):
@@ -114,4 +121,7 @@ def cost_ratios(runs):
 	if not {"rigid", "deformable"} <= by_model.keys():
 		return {}
 	rigid, deformable = by_model["rigid"].summary(), by_model["deformable"].summary()
-	return {name: deformable[name] / rigid[name] for name in ("wall_s", "steps", "ns_per_particle_step", "ns_per_degree_of_freedom_step")}
+	return {
+		name: deformable[name] / rigid[name]
+		for name in ("wall_s", "steps", "ns_per_particle_step", "ns_per_degree_of_freedom_step")
+	}

@@ -18,9 +18,16 @@ class TriangleSnapshot:
 	@classmethod
 	def of(cls, block, time):
 		mesh = block.mesh
-		inner = (mesh.neighbours >= 0) & (mesh.regions[mesh.neighbours] != mesh.regions[:, None]) & (mesh.regions[:, None] > 0)
+		inner = (
+			(mesh.neighbours >= 0)
+			& (mesh.regions[mesh.neighbours] != mesh.regions[:, None])
+			& (mesh.regions[:, None] > 0)
+		)
 		edges = np.stack([mesh.triangles, np.roll(mesh.triangles, -1, axis=1)], axis=2)
-		return cls(time, np.array(block.positions), mesh.triangles, np.array(block.sub_element_damage), np.array(block.rotation), edges[inner])
+		return cls(
+			time, np.array(block.positions), mesh.triangles, np.array(block.sub_element_damage),
+			np.array(block.rotation), edges[inner]
+		)
 
 
 @dataclass(frozen=True)
@@ -31,7 +38,8 @@ class SphereSnapshot:
 	radii: np.ndarray  # (n,) [m]
 	damage: np.ndarray  # broken share of the bonds of each sphere (n,) [-]
 	rotation: np.ndarray  # about z (n,) [rad]
-	cracks: np.ndarray  # traces in the plane of the picture of the broken bonds' sections, which moved with their spheres (k, 2, 2) [m]
+	# traces in the plane of the picture of the broken bonds' sections, which moved with their spheres (k, 2, 2) [m]
+	cracks: np.ndarray
 	tension: np.ndarray  # whether the bond failed in tension (k,)
 
 	@classmethod
@@ -41,13 +49,14 @@ class SphereSnapshot:
 		row[sample.ids] = np.arange(len(sample.ids))
 		first, second = centres[row[broken["id1"]]], centres[row[broken["id2"]]]
 		return cls(
-			time, centres, sample.radii, sample.damage, sample.rotations[:, 2], crack_traces(first, second, broken["radius"]), broken["mode"] == "tension"
+			time, centres, sample.radii, sample.damage, sample.rotations[:, 2],
+			crack_traces(first, second, broken["radius"]), broken["mode"] == "tension"
 		)
 
 
 def crack_traces(first, second, radius):
-	"""Lines (k, 2, 2) in which the sections of bonds between the points *first* and *second* (k, 3) meet the plane z = const through their middles: cracks, as seen
-	in a section of the sample.
+	"""Lines (k, 2, 2) in which the sections of bonds between the points *first* and *second* (k, 3) meet the plane
+	z = const through their middles: cracks, as seen in a section of the sample.
 
 	A section that lies in that plane has no trace; its line has no length.
 	"""

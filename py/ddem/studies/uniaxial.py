@@ -29,7 +29,11 @@ class Specimen:
 	def __init__(self, sample):
 		self.sample = sample
 		self.deformable = isinstance(sample, Block)
-		self.model, self.title, self.particle = ("deformable", "deformable triangles", "triangle") if self.deformable else ("rigid", "rigid bonded spheres", "sphere")
+		self.model, self.title, self.particle = (
+			("deformable", "deformable triangles", "triangle")
+			if self.deformable
+			else ("rigid", "rigid bonded spheres", "sphere")
+		)
 		self.particles = len(sample.triangle_ids if self.deformable else sample.ids)
 		self.degrees_of_freedom = None
 
@@ -37,14 +41,17 @@ class Specimen:
 		"""Called once the engines are set."""
 		self.degrees_of_freedom = int(self.sample.degrees_of_freedom)
 		if self.deformable:
-			breakable = [isinstance(O.bodies[int(i)].mat, ConcreteDamageMat) for i in self.sample.triangle_ids]
+			breakable = [
+				isinstance(O.bodies[int(i)].mat, ConcreteDamageMat) for i in self.sample.triangle_ids
+			]
 			self._weights = self.sample.area * breakable
 			if not any(breakable):
 				raise ValueError("no triangle of this block can break: none has a ConcreteDamageMat")
 
 	@property
 	def damage(self):
-		"""Damage of the whole sample, 0 to 1: mean η/η_max of the concrete by area, or the broken share of the bonds."""
+		"""Damage of the whole sample, 0 to 1: mean η/η_max of the concrete by area,
+		or the broken share of the bonds."""
 		if self.deformable:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
@@ -56,13 +63,21 @@ class Specimen:
 		"""Further figures for the summary."""
 		if self.deformable:
 			rotation = self.sample.rotation
-			return {"nodes": len(self.sample.node_ids), "largest_rotation_rad": float(np.abs(rotation).max())}
+			return {
+				"nodes": len(self.sample.node_ids),
+				"largest_rotation_rad": float(np.abs(rotation).max()),
+			}
 		modes = self.sample.broken["mode"]
-		return {"bonds": self.sample.initial_bonds, "broken_in_tension": int((modes == "tension").sum()), "broken_in_shear": int((modes == "shear").sum())}
+		return {
+			"bonds": self.sample.initial_bonds,
+			"broken_in_tension": int((modes == "tension").sum()),
+			"broken_in_shear": int((modes == "shear").sum()),
+		}
 
 	@property
 	def broken(self):
-		"""Records of the broken bonds, see :attr:`bonded.BondedSample.broken`; None where there are no bonds."""
+		"""Records of the broken bonds, see :attr:`bonded.BondedSample.broken`;
+		None where there are no bonds."""
 		return None if self.deformable else self.sample.broken
 
 
@@ -79,7 +94,8 @@ class CompressionTest:
 
 	:param platens: of either model; they know the sample
 	:param duration: longest time to run [s]
-	:param stop: the sample has failed when its stress stays below this part of the peak; 0: run for the whole duration
+	:param stop: the sample has failed when its stress stays below this part of the peak; 0: run for the whole
+		duration
 	:param recorders: called at the start, now and then, and at the end, for instance :class:`vtk.Recorder`
 	:param critical_dt: largest stable time step [s], to report
 	:param rows: records in the longest time
@@ -89,12 +105,16 @@ class CompressionTest:
 	kind = "compression"
 	sense = 1  #: in which stress, strain and forces of the platens, positive in compression, are recorded
 
-	def __init__(self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS, snapshots=True):
+	def __init__(
+		self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS, snapshots=True
+	):
 		if not duration > 0:
 			raise ValueError(f"duration = {duration} s must be positive")
 		if not 0 <= stop < 1:
 			raise ValueError(f"stop = {stop} must be a part of the peak stress, from 0 to below 1")
-		self.platens, self.duration, self.stop, self.recorders, self.critical_dt = platens, duration, stop, tuple(recorders), critical_dt
+		self.platens, self.duration, self.stop, self.recorders, self.critical_dt = (
+			platens, duration, stop, tuple(recorders), critical_dt
+		)
 		if rows < SNAPSHOTS:
 			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
 		self.specimen, self.longest = Specimen(platens.sample), rows
@@ -102,14 +122,18 @@ class CompressionTest:
 		self.stopped = self._filed = None
 
 	def run(self, progress=True):
-		"""Run the test and return its :class:`runs.Run`. The scene stays as it is at the end, for a closer look.
+		"""Run the test and return its :class:`runs.Run`. The scene stays as it is at the end,
+		for a closer look.
 
 		:raises ValueError: no time step
 		:raises RuntimeError: the run stopped with an error
 		"""
 		global running
 		if not O.dt > 0:
-			raise ValueError(f"O.dt = {O.dt} s must be positive; set it to ddem.time_step(0.8) or ddem.bonded.time_step(0.8)")
+			raise ValueError(
+				f"O.dt = {O.dt} s must be positive; set it to ddem.time_step(0.8) or "
+				"ddem.bonded.time_step(0.8)"
+			)
 		steps = max(1, round(self.duration / O.dt))
 		period = max(1, steps // self.longest)
 		self._held = max(2, round(_HELD * steps / period))
@@ -117,15 +141,21 @@ class CompressionTest:
 		self.specimen.prepare()
 		self.book = EnergyBalance()
 		recorder = "__import__('yade.ddem.studies.uniaxial', fromlist=['running']).running.record()"
-		O.engines = O.engines + [PyRunner(command=recorder, iterPeriod=period, firstIterRun=period, label=RECORDER)]
+		O.engines = O.engines + [
+			PyRunner(command=recorder, iterPeriod=period, firstIterRun=period, label=RECORDER)
+		]
 		O.timingEnabled = True
 		timing.reset()
 		self._look(files=True)
 		running, self._first = self, O.iter
 		start, busy = time.perf_counter(), time.process_time()
 		try:
-			with tqdm(total=steps, unit="step", desc=self.specimen.title, mininterval=0.5, disable=None if progress else True) as self._bar:
-				loading.run(until=self._end - 0.5 * O.dt, progress=False)  # to the nearest step; in time, since a time stepper may change O.dt
+			with tqdm(
+				total=steps, unit="step", desc=self.specimen.title, mininterval=0.5,
+				disable=None if progress else True
+			) as self._bar:
+				# to the nearest step; in time, since a time stepper may change O.dt
+				loading.run(until=self._end - 0.5 * O.dt, progress=False)
 		finally:
 			running = None
 		wall, busy = time.perf_counter() - start, time.process_time() - busy
@@ -139,9 +169,12 @@ class CompressionTest:
 		energies = self.book.record()
 		row = {
 			"time": O.time,
-			**{name: self.sense * getattr(self.platens, name) for name in ("strain", "stress", "force_top", "force_bottom")},
+			**{
+				name: self.sense * getattr(self.platens, name)
+				for name in ("strain", "stress", "force_top", "force_bottom")
+			},
 			"damage": self.specimen.damage,
-			"energy_drift": self.book.drift
+			"energy_drift": self.book.drift,
 		}
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
 		if self._between and len(self.rows) % (self.longest // SNAPSHOTS) == 0:
@@ -154,7 +187,9 @@ class CompressionTest:
 		done = O.iter - self._first
 		self._bar.total = done + max(0, round((self._end - O.time) / O.dt))
 		self._bar.update(done - self._bar.n)
-		self._bar.set_postfix_str(f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False)
+		self._bar.set_postfix_str(
+			f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False
+		)
 
 	def _look(self, files):
 		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
@@ -166,22 +201,28 @@ class CompressionTest:
 				recorder()
 
 	def _result(self, wall, busy):
-		units = {"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "damage": "-"}
+		units = {
+			"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "damage": "-"
+		}
 		names = dict.fromkeys(name for row in self.rows for name in row)
 		series = Series(**{name: units.get(name, "J") for name in names})
 		for row in self.rows:
 			series.append(**{name: row.get(name, 0.0) for name in names})
 		specimen = self.specimen
 		return Run(
-			model=specimen.model, title=specimen.title, particle=specimen.particle, particles=specimen.particles,
-			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt, steps=O.iter - self._first, wall=wall, busy=busy,
-			threads=O.numThreads, series=series, snapshots=self.snapshots, engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
+			model=specimen.model, title=specimen.title, particle=specimen.particle,
+			particles=specimen.particles,
+			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt,
+			steps=O.iter - self._first, wall=wall, busy=busy,
+			threads=O.numThreads, series=series, snapshots=self.snapshots,
+			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(),
 			test=self.kind, broken=specimen.broken, effects=effects().rows()
 		)
 
 
 class TensionTest(CompressionTest):
-	"""The same with platens that pull (a negative velocity): stress, strain and forces are positive in tension, and the strength is that in tension."""
+	"""The same with platens that pull (a negative velocity): stress, strain and forces are positive in tension, and
+	the strength is that in tension."""
 
 	kind, sense = "tension", -1

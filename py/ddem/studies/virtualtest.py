@@ -56,13 +56,18 @@ class Setup:
 
 	def __post_init__(self):
 		own = "size" if self.model == "deformable" else "wall_factor"
-		for name in ("width", "height", "depth", "density", "velocity", "tension_velocity", "strain", "safety", own):
+		for name in (
+			"width", "height", "depth", "density", "velocity", "tension_velocity", "strain", "safety", own
+		):
 			if not (getattr(self, name) > 0 and math.isfinite(getattr(self, name))):
 				raise ValueError(f"{name} = {getattr(self, name)} must be positive")
 		if not self.safety <= 1:
 			raise ValueError(f"safety = {self.safety} must not be above 1: the time step would be unstable")
 		if not 0 < self.stop < 0.9:
-			raise ValueError(f"stop = {self.stop} must lie between 0 and 0.9: only a stress that falls shows that the peak has passed")
+			raise ValueError(
+				f"stop = {self.stop} must lie between 0 and 0.9: only a stress that falls shows that "
+				"the peak has passed"
+			)
 		if self.convention not in ("consistent", "esys"):
 			raise ValueError(f"convention '{self.convention}' is unknown; there are consistent and esys")
 		for name in ("ramp", "viscosity"):
@@ -71,22 +76,30 @@ class Setup:
 		if self.model == "rigid":
 			smallest, largest = self.radii
 			if not 0 < smallest <= largest:
-				raise ValueError(f"radii = {smallest:g} to {largest:g} m must be positive, the smaller one first")
+				raise ValueError(
+					f"radii = {smallest:g} to {largest:g} m must be positive, the smaller one first"
+				)
 			if 4 * largest > min(self.width, self.height, self.depth):
 				raise ValueError(
-					f"radii up to {largest:g} m: fewer than two of the largest spheres fit across the specimen of "
-					f"{1e3 * self.width:g} x {1e3 * self.height:g} x {1e3 * self.depth:g} mm; choose smaller ones"
+					f"radii up to {largest:g} m: fewer than two of the largest spheres fit across "
+					f"the specimen of {1e3 * self.width:g} x {1e3 * self.height:g} "
+					f"x {1e3 * self.depth:g} mm; choose smaller ones"
 				)
 		elif self.size > self.width / 4:
-			raise ValueError(f"size = {self.size:g} m of the mesh is more than a quarter of the specimen's width of {self.width:g} m")
+			raise ValueError(
+				f"size = {self.size:g} m of the mesh is more than a quarter of the specimen's width "
+				f"of {self.width:g} m"
+			)
 
 	@classmethod
 	def standard(cls, model, specimen, **changes):
 		"""The specimens that come with it; *changes* replace settings, None leaves one as it is.
 
-		*prism*, 10 x 20 x 10 mm, of spheres: that of the tests of rigid particles (Weatherley et al.) with radii of 0.4 to 2 mm and platens of 0.125 m/s that
-		let the ends slide. *block*, 100 x 200 x 20 mm, of either model: that of scripts/ucs_compare.py, in plane strain between rough platens of 1 m/s. In
-		tension platens move at a quarter of the speed: the stress of the first wave, ρcv, must stay well below the strength, which is small there.
+		*prism*, 10 x 20 x 10 mm, of spheres: that of the tests of rigid particles (Weatherley et al.) with
+		radii of 0.4 to 2 mm and platens of 0.125 m/s that let the ends slide. *block*, 100 x 200 x 20 mm,
+		of either model: that of scripts/ucs_compare.py, in plane strain between rough platens of 1 m/s.
+		In tension platens move at a quarter of the speed: the stress of the first wave, ρcv, must stay well
+		below the strength, which is small there.
 		"""
 		if model not in ("rigid", "deformable"):
 			raise ValueError(f"model '{model}' is unknown; there are rigid and deformable")
@@ -94,20 +107,37 @@ class Setup:
 			raise ValueError(f"specimen '{specimen}' is unknown; there are {', '.join(SPECIMENS)}")
 		if model == "deformable" and specimen == "prism":
 			raise ValueError("the prism is for spheres; triangles are in plane strain: take the block")
-		settings = {**SPECIMENS[specimen], **{name: value for name, value in changes.items() if value is not None}}
+		settings = {
+			**SPECIMENS[specimen],
+			**{name: value for name, value in changes.items() if value is not None},
+		}
 		settings.setdefault("tension_velocity", settings["velocity"] / 4)
 		return cls(model=model, **settings)
 
 	def plain(self):
 		"""The settings that matter to this model, as plain data."""
 		other = _DEFORMABLE if self.model == "rigid" else _RIGID
-		return {name: list(value) if isinstance(value, tuple) else value for name, value in dataclasses.asdict(self).items() if name not in other}
+		return {
+			name: list(value) if isinstance(value, tuple) else value
+			for name, value in dataclasses.asdict(self).items()
+			if name not in other
+		}
 
 
 SPECIMENS = {
-	"prism": {"width": 0.010, "height": 0.020, "depth": 0.010, "rough": False, "density": 2400.0, "velocity": 0.125, "ramp": 20e-6, "radii": (0.4e-3, 2e-3)},
+	"prism": {
+		"width": 0.010,
+		"height": 0.020,
+		"depth": 0.010,
+		"rough": False,
+		"density": 2400.0,
+		"velocity": 0.125,
+		"ramp": 20e-6,
+		"radii": (0.4e-3, 2e-3),
+	},
 	"block": {
-		"width": 0.10, "height": 0.20, "depth": 0.02, "rough": True, "held": True, "density": 2400.0, "velocity": 1.0, "ramp": 1e-4, "radii": (2e-3, 5e-3),
+		"width": 0.10, "height": 0.20, "depth": 0.02, "rough": True, "held": True, "density": 2400.0,
+		"velocity": 1.0, "ramp": 1e-4, "radii": (2e-3, 5e-3),
 		"size": 5e-3
 	},
 }
@@ -115,7 +145,11 @@ SPECIMENS = {
 
 def cases(targets, seeds):
 	"""The tests that measure these targets ("young", "ucs", "tensile"), each with every seed."""
-	kinds = [kind for kind, measures in (("compression", {"young", "ucs"}), ("tension", {"tensile"})) if measures & set(targets)]
+	kinds = [
+		kind
+		for kind, measures in (("compression", {"young", "ucs"}), ("tension", {"tensile"}))
+		if measures & set(targets)
+	]
 	return [{"test": kind, "seed": seed} for kind in kinds for seed in seeds]
 
 
@@ -129,8 +163,8 @@ def perform(setup, values, case, cache=None):
 	:param values: attribute -> value of the :yref:`BondedMat` or :yref:`ConcreteDamageMat`
 	:param case: {"test": "compression" or "tension", "seed": whole number}
 	:param cache: folder where packings are kept for the next time
-	:returns: "ucs" or "tensile" [Pa], "young" [Pa], "strain_at_peak", "damage_at_peak", "energy_error"; all but tensile with ``tension_`` in front where the
-		test is in tension, so that the tests of a point do not mix
+	:returns: "ucs" or "tensile" [Pa], "young" [Pa], "strain_at_peak", "damage_at_peak", "energy_error"; all but
+		tensile with ``tension_`` in front where the test is in tension, so that the tests of a point do not mix
 	:raises evaluations.EvaluationError: the specimen did not fail, or the run is not sound
 	:raises ValueError: the material refuses its parameters
 	"""
@@ -139,28 +173,41 @@ def perform(setup, values, case, cache=None):
 	O.reset()
 	tension = case["test"] == "tension"
 	velocity, strain = (-setup.tension_velocity, 0.5 * setup.strain) if tension else (setup.velocity, setup.strain)
-	platens, critical = {"rigid": _rigid, "deformable": _deformable}[setup.model](setup, values, case["seed"], velocity, cache)
+	platens, critical = {"rigid": _rigid, "deformable": _deformable}[setup.model](
+		setup, values, case["seed"], velocity, cache
+	)
 	O.dt = setup.safety * critical
 	duration = strain * setup.height / (2 * abs(velocity)) + 0.5 * setup.ramp
-	test = (uniaxial.TensionTest if tension else uniaxial.CompressionTest)(platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS, snapshots=False)
+	test = (uniaxial.TensionTest if tension else uniaxial.CompressionTest)(
+		platens, duration, stop=setup.stop, critical_dt=critical, rows=ROWS, snapshots=False
+	)
 	run = test.run(progress=False)
 	measures = run.strength
 	if not measures.peaked:
 		raise EvaluationError(
-			f"the {case['test']} test ended at a strain of {100 * run.series.last('strain'):.3g} % with {run.series.last('stress') / 1e6:.3g} MPa before the "
-			f"stress had fallen from its largest value, {measures.ucs / 1e6:.3g} MPa: allow a larger strain"
+			f"the {case['test']} test ended at a strain of {100 * run.series.last('strain'):.3g} % with "
+			f"{run.series.last('stress') / 1e6:.3g} MPa before the stress had fallen from its largest "
+			f"value, {measures.ucs / 1e6:.3g} MPa: allow a larger strain"
 		)
 	if not run.energy_error < ENERGY_ERROR and setup.convention != "esys":  # which is not conservative
 		raise EvaluationError(
-			f"the energy book is off by {100 * run.energy_error:.2g} %: the run is not sound; take a smaller time step (safety = {setup.safety:g})"
+			f"the energy book is off by {100 * run.energy_error:.2g} %: the run is not sound; "
+			f"take a smaller time step (safety = {setup.safety:g})"
 		)
 	if not math.isfinite(measures.young):
-		raise EvaluationError("fewer than three records between 20 and 60 % of the strength, none to fit Young's modulus: load slower, or less far")
+		raise EvaluationError(
+			"fewer than three records between 20 and 60 % of the strength, none to fit Young's modulus: "
+			"load slower, or less far"
+		)
 	figures = {
-		"young": measures.young, "tensile" if tension else "ucs": measures.ucs, "strain_at_peak": measures.strain_at_peak,
+		"young": measures.young, "tensile" if tension else "ucs": measures.ucs,
+		"strain_at_peak": measures.strain_at_peak,
 		"damage_at_peak": float(run.series["damage"][measures.peak]), "energy_error": run.energy_error
 	}
-	return {f"tension_{name}" if tension and name != "tensile" else name: float(value) for name, value in figures.items()}
+	return {
+		f"tension_{name}" if tension and name != "tensile" else name: float(value)
+		for name, value in figures.items()
+	}
 
 
 def material(model, values, density):
@@ -183,11 +230,15 @@ def material(model, values, density):
 
 def _rigid(setup, values, seed, velocity, cache):
 	from yade import O, ddem
-	spheres = packing.prism(setup.width, setup.height, setup.depth, *setup.radii, seed=seed, fails=setup.fails, keep=cache)
+	spheres = packing.prism(
+		setup.width, setup.height, setup.depth, *setup.radii, seed=seed, fails=setup.fails, keep=cache
+	)
 	made = material("rigid", values, setup.density / spheres.solid_fraction)
 	O.materials.append(made)
 	sample = ddem.bonded.append(spheres, made)
-	platens = ddem.bonded.platens(sample, velocity, setup.ramp, stiffness=setup.wall_factor * made.young, bonded=velocity < 0)
+	platens = ddem.bonded.platens(
+		sample, velocity, setup.ramp, stiffness=setup.wall_factor * made.young, bonded=velocity < 0
+	)
 	faces = [(1, "x")] if setup.rough else []
 	for axis, dof in faces + ([(2, "z")] if setup.held else []):
 		_hold(sample, spheres, axis, dof)
@@ -203,7 +254,12 @@ def _deformable(setup, values, seed, velocity, _):
 	mesh = ddem.mesh.rectangle(setup.width, setup.height, setup.size, pattern=setup.mesh, **extra)
 	block = ddem.append(mesh, made, seed=seed, thickness=setup.depth)
 	platens = ddem.platens(block, velocity, setup.ramp, lateral="fixed" if setup.rough else "free", both=True)
-	O.engines = [ForceResetter(), *platens.engines, DeformableTimeStepper(safety=setup.safety), DeformableEngine(rotation=setup.rotation)]
+	O.engines = [
+		ForceResetter(),
+		*platens.engines,
+		DeformableTimeStepper(safety=setup.safety),
+		DeformableEngine(rotation=setup.rotation),
+	]
 	return platens, O.engines[-1].criticalTimeStep()
 
 
@@ -220,7 +276,8 @@ def _hold(sample, spheres, axis, dof):
 
 
 class SeparateYade:
-	"""Makes every evaluation in a YADE of its own, so that several run at the same time and a crash ends only one; for :class:`evaluations.Bench`.
+	"""Makes every evaluation in a YADE of its own, so that several run at the same time and a crash ends only one;
+	for :class:`evaluations.Bench`.
 
 	:param setup: :class:`Setup`
 	:param fixed: attribute -> value of the material, what is not tuned
@@ -233,7 +290,8 @@ class SeparateYade:
 		self._processes = processes.YadeProcesses(yade)
 
 	def settings(self):
-		"""What a result depends on beside the tuned parameters, as plain data: specimen, test, fixed parameters, and the plugin."""
+		"""What a result depends on beside the tuned parameters, as plain data:
+		specimen, test, fixed parameters, and the plugin."""
 		from yade import config
 
 		from .commandline import plugin
@@ -244,7 +302,15 @@ class SeparateYade:
 			paths = [os.path.join(folder, name) for name in ("request.json", "answer.json", "log.txt")]
 			request, answer, log = paths
 			with open(request, "w") as file:
-				json.dump({"setup": dataclasses.asdict(self.setup), "values": {**self.fixed, **values}, "case": case, "cache": self.cache}, file)
+				json.dump(
+					{
+						"setup": dataclasses.asdict(self.setup),
+						"values": {**self.fixed, **values},
+						"case": case,
+						"cache": self.cache,
+					},
+					file,
+				)
 			try:
 				code = self._processes.run(RUNNER, [request, answer], log)
 			except processes.Stopped as error:
@@ -255,7 +321,9 @@ class SeparateYade:
 				if found["error"] is None:
 					return found["measured"]
 				raise EvaluationError(found["error"])
-			raise EvaluationError(f"YADE {processes.ending(code)} without a result; its last lines: {processes.tail(log)}")
+			raise EvaluationError(
+				f"YADE {processes.ending(code)} without a result; its last lines: {processes.tail(log)}"
+			)
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
@@ -263,7 +331,8 @@ class SeparateYade:
 
 
 def answer(request, path):
-	"""What the YADE of an evaluation does: read the request, perform the test, and write measures or an error. Called by virtualtest_run.py."""
+	"""What the YADE of an evaluation does: read the request, perform the test, and write measures or an error.
+	Called by virtualtest_run.py."""
 	with open(request) as file:
 		asked = json.load(file)
 	setup = asked["setup"]

@@ -1,16 +1,20 @@
 # GPL v2 or later, see LICENSE.
-"""The law of a point of concrete a second time, as the ordinary differential equations that Zubelewicz (2018) writes, integrated by SciPy.
+"""The law of a point of concrete a second time, as the ordinary differential equations that Zubelewicz
+(2018) writes, integrated by SciPy.
 
-It shares no code with the plugin: rates instead of steps, tensors of three dimensions with NumPy's eigenvectors instead of Mohr's circle, derivatives of the
-stress by complex steps, adaptive multistep integration (LSODA). The steps of the plugin must converge to it.
+It shares no code with the plugin: rates instead of steps, tensors of three dimensions with NumPy's eigenvectors instead
+of Mohr's circle, derivatives of the stress by complex steps, adaptive multistep integration (LSODA).
+The steps of the plugin must converge to it.
 
-With the elastic strain ε_e = ε − ε_p, the stress σ(ε_e, Ω) of section 3 and the flow tensors of eqs. 5 and 8, the state follows
+With the elastic strain ε_e = ε − ε_p, the stress σ(ε_e, Ω) of section 3 and the flow tensors of eqs. 5 and
+8, the state follows
 
-	ε̇_p = ½ M_p ė_eq + κ ε_e,   Ω̇ = ½ M_c ξ_c0 σ_eq ė_eq/G_f,   ė_eq = Λ_0 ė_0 (ė_N/ė_0)^ω_p (σ_eq/σ_p)^n_p,   ė_N = √(½ ε̇:ε̇)
+	ε̇_p = ½ M_p ė_eq + κ ε_e,   Ω̇ = ½ M_c ξ_c0 σ_eq ė_eq/G_f,
+	ė_eq = Λ_0 ė_0 (ė_N/ė_0)^ω_p (σ_eq/σ_p)^n_p,   ė_N = √(½ ε̇:ε̇)
 
-Where a stress is held, the components of ε̇ that are free follow from σ̇ = (∂σ/∂ε_e):ε̇_e + (∂σ/∂Ω):Ω̇. The slip κ ≥ 0 of a crack that closes is what
-:yref:`ConcreteDamageMat` adds: the stored energy W must not rise by the change of the stiffness alone, κ = ½ (∂ ln W/∂χ) χ̇, with the share χ of the
-damage that the stiffness feels.
+Where a stress is held, the components of ε̇ that are free follow from σ̇ = (∂σ/∂ε_e):ε̇_e + (∂σ/∂Ω):Ω̇. The slip
+κ ≥ 0 of a crack that closes is what :yref:`ConcreteDamageMat` adds: the stored energy W must not rise by the change of
+the stiffness alone, κ = ½ (∂ ln W/∂χ) χ̇, with the share χ of the damage that the stiffness feels.
 
 Tensors have the components xx, yy, zz, xy; tension is positive.
 """
@@ -43,7 +47,8 @@ def _double(a, b):
 
 
 def extrapolated(run, steps):
-	"""What run(steps) tends to as its steps become small, their error being of first order: twice run(steps) minus run(half as many)."""
+	"""What run(steps) tends to as its steps become small, their error being of first order:
+	twice run(steps) minus run(half as many)."""
 	return 2 * run(steps) - run(steps // 2)
 
 
@@ -65,7 +70,8 @@ def fractions(count):
 
 
 class Law:
-	"""The right-hand sides, with all effects on; *parameters* as :func:`yade.ddem.materialpoint.concrete` gives them."""
+	"""The right-hand sides, with all effects on;
+	*parameters* as :func:`yade.ddem.materialpoint.concrete` gives them."""
 
 	def __init__(self, parameters):
 		self.p = parameters
@@ -82,7 +88,8 @@ class Law:
 		return (ratio / size)[..., None, None] * tensor, ratio
 
 	def effect(self, elastic, loss, ratio):
-		"""χ [-]: η_max for an open crack, η_max ξ_c1 for a closed one, linear over the closure band in the crack-normal stress of the closed crack."""
+		"""χ [-]: η_max for an open crack, η_max ξ_c1 for a closed one, linear over the closure band in the
+		crack-normal stress of the closed crack."""
 		normal = _double(loss, self.degraded(self.closed, loss, elastic))
 		band = np.where(ratio.real > 0, ratio, 1) * self.p["closureBand"]
 		openness = np.where(normal.real >= 0, 1, np.where(normal.real <= -band.real, 0, 1 + normal / band))
@@ -92,7 +99,9 @@ class Law:
 		"""λ Δ (Δ:ε_e) + 2μ Δ·ε_e·Δ with Δ = 1 − χ η_0 N_Ω [Pa], without the equation of state."""
 		delta = np.eye(3) - np.asarray(effect)[..., None, None] * loss
 		along = _double(delta, elastic)[..., None, None]
-		return (self.p["bulk"] - 2 / 3 * self.p["shear"]) * along * delta + 2 * self.p["shear"] * delta @ elastic @ delta
+		return (self.p["bulk"] - 2 / 3 * self.p["shear"]) * along * delta + 2 * self.p[
+			"shear"
+		] * delta @ elastic @ delta
 
 	def stress(self, elastic, damage):
 		"""(σ (…, 4) [Pa], χ (…) [-])."""
@@ -128,24 +137,40 @@ class Law:
 		:param strain_rate: (4,) [1/s], of the components that are not held
 		:param stress_rate: (4,) [Pa/s], of those that are held
 		:param held: (4,) where the stress is prescribed
-		:param combine: (4, 4), what of the stresses is prescribed there; the unit matrix for the components themselves
+		:param combine: (4, 4), what of the stresses is prescribed there;
+			the unit matrix for the components themselves
 		"""
 		p = self.p
 		at = np.concatenate([elastic, damage]) + 1j * _STEP * np.vstack([np.zeros(8), np.eye(8)])
 		stresses, effects = self.stress(at[:, :4], at[:, 4:])
-		stress, effect, tangent = stresses[0].real, effects[0].real, combine @ stresses[1:].imag.T / _STEP  # ∂σ/∂(ε_e, Ω) (4, 8)
+		# ∂σ/∂(ε_e, Ω) (4, 8)
+		stress, effect, tangent = stresses[0].real, effects[0].real, combine @ stresses[1:].imag.T / _STEP
 		slip = self._slip(elastic, damage, effect, effects[1:].imag / _STEP)
 		values, axes = np.linalg.eigh(_tensor(stress))
 		flow, growth = _components((axes * concrete_theory.flow_tensors(p, values)[:, None, :]) @ axes.T)
 		equivalent, ratio = max(0.5 * (_TWICE * flow) @ stress, 0.0), self.damage(damage)[1]
-		openness = (effect - self.closed) / (p["damageLimit"] - self.closed) if ratio > 0 else float(values[-1] >= 0)
-		growth = 0.5 * growth * (p["closedGrowth"] + (1 - p["closedGrowth"]) * openness) * equivalent / p["fractureEnergy"]
+		openness = (
+			(effect - self.closed) / (p["damageLimit"] - self.closed)
+			if ratio > 0
+			else float(values[-1] >= 0)
+		)
+		growth = (
+			0.5
+			* growth
+			* (p["closedGrowth"] + (1 - p["closedGrowth"]) * openness)
+			* equivalent
+			/ p["fractureEnergy"]
+		)
 		of_flow = np.concatenate([-0.5 * flow, growth])  # of (ε_e, Ω)
-		# all rates are linear in ė_eq: what is constant and what multiplies it, in two columns; without slip, and again with it where it would be positive
+		# all rates are linear in ė_eq: what is constant and what multiplies it, in two columns; without slip,
+		# and again with it where it would be positive
 		for kappa in (np.zeros(8), slip):
 			reduced = tangent - np.outer(tangent[:, :4] @ elastic, kappa)
 			total = np.column_stack([np.where(held, 0, strain_rate), np.zeros(4)])
-			right = np.column_stack([np.where(held, stress_rate, 0), -reduced @ of_flow]) - reduced[:, :4] @ total
+			right = (
+				np.column_stack([np.where(held, stress_rate, 0), -reduced @ of_flow])
+				- reduced[:, :4] @ total
+			)
 			total[held] = np.linalg.solve(reduced[:, :4][np.ix_(held, held)], right[held])
 			amount = self._amount(total, equivalent / (p["strength"] * (1 - ratio)))
 			strain = total @ (1, amount)
@@ -175,19 +200,28 @@ class Law:
 
 
 class RatePoint:
-	"""A point that goes along paths as :class:`yade.ddem.materialpoint.MaterialPoint` does, but by integration of the rates."""
+	"""A point that goes along paths as :class:`yade.ddem.materialpoint.MaterialPoint` does,
+	but by integration of the rates."""
 
 	def __init__(self, parameters, damage=(0, 0, 0, 0)):
 		self.law = Law(parameters)
 		self.state = np.concatenate([np.zeros(8), damage])  # ε, ε_p, Ω
 
 	def uniaxial(self, rate, until, confinement=0.0, samples=200):
-		"""Strain and stress (samples, 4) of uniaxial stress under a confining pressure, the axial strain yy counted from the confined state; as
-		:meth:`yade.ddem.materialpoint.MaterialPoint.uniaxial`."""
+		"""Strain and stress (samples, 4) of uniaxial stress under a confining pressure, the axial strain yy
+		counted from the confined state; as :meth:`yade.ddem.materialpoint.MaterialPoint.uniaxial`."""
 		if confinement:
-			self.go(confinement / (3 * self.law.p["bulk"] * abs(rate)), stress=dict.fromkeys(("xx", "yy", "zz"), -confinement))
+			self.go(
+				confinement / (3 * self.law.p["bulk"] * abs(rate)),
+				stress=dict.fromkeys(("xx", "yy", "zz"), -confinement),
+			)
 		begin = self.state[1]
-		strain, stress, _, _ = self.go(until / rate, strain={"yy": begin + until}, stress={"xx": -confinement, "zz": -confinement}, shares=fractions(samples))
+		strain, stress, _, _ = self.go(
+			until / rate,
+			strain={"yy": begin + until},
+			stress={"xx": -confinement, "zz": -confinement},
+			shares=fractions(samples),
+		)
 		strain[:, 1] -= begin
 		return strain, stress
 
@@ -205,15 +239,21 @@ class RatePoint:
 		for name, (leader, ratio) in follow.items():
 			combine[COMPONENTS.index(name), COMPONENTS.index(leader)] = -ratio
 		now, _ = self.law.stress(self.state[:4] - self.state[4:8], self.state[8:])
-		rate = lambda targets, start: np.array([targets.get(name, value) - value for name, value in zip(COMPONENTS, start)]) / duration
+		rate = lambda targets, start: (
+			np.array([targets.get(name, value) - value for name, value in zip(COMPONENTS, start)])
+			/ duration
+		)
 		strain_rate, stress_rate = rate(strain, self.state[:4]), rate(stress, now)
 		size = np.abs(strain_rate).max() * duration or 1e-3
 
 		def rates(_, state):
-			return self.law.rates(state[:4] - state[4:8], state[8:], strain_rate, stress_rate, held, combine).ravel()
+			return self.law.rates(
+				state[:4] - state[4:8], state[8:], strain_rate, stress_rate, held, combine
+			).ravel()
 
 		solved = solve_ivp(
-			rates, (0, duration), self.state, method="LSODA", t_eval=duration * np.asarray(shares), rtol=tolerance, atol=tolerance * 1e-2 * size,
+			rates, (0, duration), self.state, method="LSODA", t_eval=duration * np.asarray(shares),
+			rtol=tolerance, atol=tolerance * 1e-2 * size,
 			first_step=1e-6 * duration, max_step=0.1 * duration
 		)
 		if not solved.success:

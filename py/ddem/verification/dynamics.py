@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Elastodynamics by finite elements, independent of the plugin: FreeFem++ assembles the matrices, textbook schemes integrate in time."""
+"""Elastodynamics by finite elements, independent of the plugin: FreeFem++ assembles the matrices,
+textbook schemes integrate in time."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,8 @@ fespace Vh(Th, [ELEMENT, ELEMENT]);
 real lambda, mu, density;
 { ifstream file("material.txt"); file >> lambda; file >> mu; file >> density; }
 varf stiffness([u, v], [p, q]) = int2d(Th)(
-	lambda * (dx(u) + dy(v)) * (dx(p) + dy(q)) + 2 * mu * (dx(u) * dx(p) + dy(v) * dy(q)) + mu * (dy(u) + dx(v)) * (dy(p) + dx(q)));
+	lambda * (dx(u) + dy(v)) * (dx(p) + dy(q)) + 2 * mu * (dx(u) * dx(p) + dy(v) * dy(q))
+	+ mu * (dy(u) + dx(v)) * (dy(p) + dx(q)));
 varf inertia([u, v], [p, q]) = int2d(Th)(density * (u * p + v * q));
 varf push([u, v], [p, q]) = int1d(Th, 1)(p);
 matrix K = stiffness(Vh, Vh), M = inertia(Vh, Vh);
@@ -51,7 +53,9 @@ class System:
 		"""
 		distance = np.linalg.norm(self.points - point, axis=1) + 1e9 * (self.axis != axis)
 		if distance.min() > 1e-9:
-			raise ValueError(f"no degree of freedom at {tuple(point)} m; the nearest is {distance.min():.3g} m away")
+			raise ValueError(
+				f"no degree of freedom at {tuple(point)} m; the nearest is {distance.min():.3g} m away"
+			)
 		return int(distance.argmin())
 
 
@@ -63,14 +67,22 @@ def assemble(nodes, triangles, material, edges, element="P2"):
 	:param element: "P1" or "P2": linear or quadratic triangles
 	"""
 	script = _ASSEMBLY.replace("ELEMENT", element)
-	kind, first, second, value = freefem.run(script, nodes, triangles, {"material": np.array(material)}, [(a, b, 1) for a, b in edges]).T
+	kind, first, second, value = freefem.run(
+		script, nodes, triangles, {"material": np.array(material)}, [(a, b, 1) for a, b in edges]
+	).T
 	count = int((kind == 0).sum())
-	matrix = lambda chosen: coo_matrix((value[chosen], (first[chosen].astype(int), second[chosen].astype(int))), (count, count)).tocsr()
-	return System(np.column_stack([first, second])[kind == 0], value[kind == 0].astype(int), matrix(kind == 2), matrix(kind == 3), value[kind == 1])
+	matrix = lambda chosen: coo_matrix(
+		(value[chosen], (first[chosen].astype(int), second[chosen].astype(int))), (count, count)
+	).tocsr()
+	return System(
+		np.column_stack([first, second])[kind == 0], value[kind == 0].astype(int), matrix(kind == 2),
+		matrix(kind == 3), value[kind == 1]
+	)
 
 
 def lumped_masses(mesh, density, vertex_share=1 / 6):
-	"""Masses per thickness [kg/m] of deformable triangles, vertices first, then cores: each vertex has a third of *vertex_share* of every triangle around it.
+	"""Masses per thickness [kg/m] of deformable triangles, vertices first, then cores: each vertex has a third of
+	*vertex_share* of every triangle around it.
 
 	:param density: [kg/m³]
 	"""
@@ -80,7 +92,8 @@ def lumped_masses(mesh, density, vertex_share=1 / 6):
 
 
 def first_mode(system, mass, held):
-	"""(angular frequency [rad/s], shape (n,)) of the slowest vibration with a lumped mass (n,) [kg/m], where *held* (n,) is true at rest."""
+	"""(angular frequency [rad/s], shape (n,)) of the slowest vibration with a lumped mass (n,) [kg/m], where *held*
+	(n,) is true at rest."""
 	free = np.flatnonzero(~held)
 	scale = diags(1 / np.sqrt(mass[free]))  # turns K u = ω² M u into a standard problem
 	values, vectors = eigsh((scale @ system.stiffness[free][:, free] @ scale).tocsc(), k=1, sigma=0)
@@ -90,7 +103,8 @@ def first_mode(system, mass, held):
 
 
 def newmark(system, pressure, dt, steps):
-	"""Displacements (steps + 1, n) [m] from rest, by Newmark's method of mean acceleration (β = ¼, γ = ½): implicit, of second order, without damping.
+	"""Displacements (steps + 1, n) [m] from rest, by Newmark's method of mean acceleration (β = ¼, γ = ½):
+	implicit, of second order, without damping.
 
 	:param pressure: function of the time [Pa]
 	"""
@@ -108,9 +122,11 @@ def newmark(system, pressure, dt, steps):
 
 
 def central_differences(system, mass, pressure, dt, steps):
-	"""Displacements (steps + 1, n) [m] with a lumped mass (n,) [kg/m], by central differences: explicit, of second order.
+	"""Displacements (steps + 1, n) [m] with a lumped mass (n,) [kg/m], by central differences:
+	explicit, of second order.
 
-	The velocity is zero half a step before the start, as in YADE: a pressure that does not begin at zero acts half a step more.
+	The velocity is zero half a step before the start, as in YADE:
+	a pressure that does not begin at zero acts half a step more.
 	"""
 	inverse = diags(1 / mass)
 	moved, velocity = np.zeros(len(system.load)), np.zeros(len(system.load))

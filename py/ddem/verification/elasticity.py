@@ -1,8 +1,9 @@
 # GPL v2 or later, see LICENSE.
 """Exact solutions of plane-strain elasticity, and what follows from the elastic constants.
 
-Plane fields come from the complex potentials φ and ψ of Kolosov and Muskhelishov (N. I. Muskhelishov, Some Basic Problems of the Mathematical Theory of
-Elasticity, 1953, § 32), so that equilibrium and compatibility hold by construction::
+Plane fields come from the complex potentials φ and ψ of Kolosov and Muskhelishov (N. I. Muskhelishov, Some Basic
+Problems of the Mathematical Theory of Elasticity, 1953, § 32), so that equilibrium and compatibility
+hold by construction::
 
 	2μ (u + i v) = κ φ(z) − z conj φ'(z) − conj ψ(z),   κ = 3 − 4ν
 	σ_xx + σ_yy = 4 Re φ'(z),   σ_yy − σ_xx + 2 i σ_xy = 2 (conj(z) φ''(z) + ψ'(z))
@@ -33,24 +34,34 @@ class PlaneField:
 	def traction(self, points, normals):
 		"""(n, 2) force per area [Pa] on surfaces with these outer normals."""
 		xx, yy, xy = np.moveaxis(self.stress(points), -1, 0)
-		return np.stack([xx * normals[..., 0] + xy * normals[..., 1], xy * normals[..., 0] + yy * normals[..., 1]], axis=-1)
+		return np.stack(
+			[xx * normals[..., 0] + xy * normals[..., 1], xy * normals[..., 0] + yy * normals[..., 1]],
+			axis=-1,
+		)
 
 
 def kirsch(material, stress, radius):
-	"""Infinite plate with a hole at the origin, pulled by *stress* [Pa] along x (Kirsch 1898; Muskhelishov § 56a)."""
+	"""Infinite plate with a hole at the origin, pulled by *stress* [Pa] along x (Kirsch 1898;
+	Muskhelishov § 56a)."""
 	s, a = stress, radius
 	return PlaneField(
-		material, lambda z: s / 4 * (z + 2 * a**2 / z), lambda z: s / 4 * (1 - 2 * a**2 / z**2), lambda z: s * a**2 / z**3, lambda z: -s / 2 *
-		(z + a**2 / z - a**4 / z**3), lambda z: -s / 2 * (1 - a**2 / z**2 + 3 * a**4 / z**4)
+		material,
+		lambda z: s / 4 * (z + 2 * a**2 / z),
+		lambda z: s / 4 * (1 - 2 * a**2 / z**2),
+		lambda z: s * a**2 / z**3,
+		lambda z: -s / 2 * (z + a**2 / z - a**4 / z**3),
+		lambda z: -s / 2 * (1 - a**2 / z**2 + 3 * a**4 / z**4),
 	)
 
 
 def exponential(material, stress, length):
-	"""A smooth field with all components, which grows by e over *length* [m]; φ = S ℓ e^{z/ℓ}, ψ = i S ℓ e^{z/ℓ}/2."""
+	"""A smooth field with all components, which grows by e over *length* [m];
+	φ = S ℓ e^{z/ℓ}, ψ = i S ℓ e^{z/ℓ}/2."""
 	s, l = stress, length
 	grow = lambda z: np.exp(z / l)
 	return PlaneField(
-		material, lambda z: s * l * grow(z), lambda z: s * grow(z), lambda z: s / l * grow(z), lambda z: 0.5j * s * l * grow(z), lambda z: 0.5j * s * grow(z)
+		material, lambda z: s * l * grow(z), lambda z: s * grow(z), lambda z: s / l * grow(z),
+		lambda z: 0.5j * s * l * grow(z), lambda z: 0.5j * s * grow(z)
 	)
 
 
@@ -61,11 +72,14 @@ def plane_modulus(material):
 
 def speeds(material):
 	"""Speeds of compression and shear waves in plane strain [m/s]: √((B + 4μ/3)/ρ), √(μ/ρ)."""
-	return np.sqrt((material.bulk + 4 / 3 * material.shear) / material.density), np.sqrt(material.shear / material.density)
+	return np.sqrt((material.bulk + 4 / 3 * material.shear) / material.density), np.sqrt(
+		material.shear / material.density
+	)
 
 
 def rayleigh_speed(material):
-	"""Speed of Rayleigh's surface wave [m/s], the root of (2 − s)² = 4 √(1 − s) √(1 − s c_s²/c_p²), s = c_R²/c_s² (Rayleigh 1885)."""
+	"""Speed of Rayleigh's surface wave [m/s], the root of (2 − s)² = 4 √(1 − s) √(1 − s c_s²/c_p²), s = c_R²/c_s²
+	(Rayleigh 1885)."""
 	p, s = speeds(material)
 	ratio = (s / p)**2
 	root = brentq(lambda x: (2 - x)**2 - 4 * np.sqrt((1 - x) * (1 - x * ratio)), 1e-3, 1 - 1e-9, xtol=1e-15)

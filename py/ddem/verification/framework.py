@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""What a verification case is: how it is declared, found and run, and what it records. How to write one: see the package's docstring."""
+"""What a verification case is: how it is declared, found and run, and what it records. How to write one:
+see the package's docstring."""
 import dataclasses
 import difflib
 import importlib
@@ -15,7 +16,10 @@ from yade import O
 from ..effect_table import effects
 
 #: groups of cases, in the order of the report
-GROUPS = ("the element", "statics", "waves and vibration", "rotation", "dynamic relaxation", "concrete at a point", "concrete structures")
+GROUPS = (
+	"the element", "statics", "waves and vibration", "rotation", "dynamic relaxation", "concrete at a point",
+	"concrete structures"
+)
 SLOW = 4.0  #: cases that take longer are slow [s]
 
 _cases = {}  # name -> Case
@@ -36,7 +40,10 @@ class Record:
 
 	def plain(self):
 		"""As a dict for JSON, None where a number is not finite."""
-		return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in dataclasses.asdict(self).items()}
+		return {
+			name: None if isinstance(value, float) and not math.isfinite(value) else value
+			for name, value in dataclasses.asdict(self).items()
+		}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,7 +67,8 @@ class Case:
 
 	@property
 	def text(self):
-		"""The other paragraphs of the docstring, as a list of (label, text, formula?): *Reference:* and *Expect:* are labels, indented paragraphs formulas."""
+		"""The other paragraphs of the docstring, as a list of (label, text, formula?): *Reference:* and
+		*Expect:* are labels, indented paragraphs formulas."""
 		result = []
 		for paragraph in inspect.getdoc(self.function).split("\n\n")[1:]:
 			formula = paragraph[:1].isspace()
@@ -72,7 +80,10 @@ class Case:
 	@property
 	def settings(self):
 		"""Settings that may be changed, and their defaults."""
-		return {name: parameter.default for name, parameter in list(inspect.signature(self.function).parameters.items())[1:]}
+		return {
+			name: parameter.default
+			for name, parameter in list(inspect.signature(self.function).parameters.items())[1:]
+		}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -136,12 +147,18 @@ class Check:
 		value, reference = float(value), float(reference)
 		scale = abs(reference) if scale is None else float(scale)
 		if not scale > 0:
-			raise ValueError(f"{self._case}, {quantity}: the error is relative to {scale}; give scale= where the reference is zero")
+			raise ValueError(
+				f"{self._case}, {quantity}: the error is relative to {scale}; give scale= where the "
+				"reference is zero"
+			)
 		error = abs(value - reference) / scale
-		self._rows.append((quantity, value, reference, error, float(tolerance), bool(error <= tolerance), source))
+		self._rows.append(
+			(quantity, value, reference, error, float(tolerance), bool(error <= tolerance), source)
+		)
 
 	def picture(self, draw, caption):
-		"""Draw a picture where pictures are wanted; ``draw()`` is called at once and returns a figure or axes."""
+		"""Draw a picture where pictures are wanted;
+		``draw()`` is called at once and returns a figure or axes."""
 		if not self._wanted:
 			return
 		from matplotlib import rc_context
@@ -159,11 +176,20 @@ class Check:
 
 	def fail(self, error):
 		"""The case raised an error."""
-		self._rows.append(("runs to its end", math.nan, 1.0, math.nan, 0.0, False, f"{type(error).__name__}: {error}"))
+		self._rows.append(
+			("runs to its end", math.nan, 1.0, math.nan, 0.0, False, f"{type(error).__name__}: {error}")
+		)
 
 	def result(self, case, error=""):
 		wall = time.perf_counter() - self._began - self._drawing
-		return Result(case, [Record(self._case, *row, wall) for row in self._rows], self.pictures, self.notes, wall, error)
+		return Result(
+			case,
+			[Record(self._case, *row, wall) for row in self._rows],
+			self.pictures,
+			self.notes,
+			wall,
+			error,
+		)
 
 
 def case(group, seconds, needs=""):
@@ -179,9 +205,14 @@ def case(group, seconds, needs=""):
 	def declare(function):
 		name = function.__name__
 		if not function.__doc__:
-			raise ValueError(f"case '{name}' needs a docstring: its title, what it shows, Reference: and Expect:")
+			raise ValueError(
+				f"case '{name}' needs a docstring: its title, what it shows, Reference: and Expect:"
+			)
 		if name in _cases and _cases[name].function.__module__ != function.__module__:
-			raise ValueError(f"two cases are called '{name}': in {_cases[name].function.__module__} and in {function.__module__}")
+			raise ValueError(
+				f"two cases are called '{name}': in {_cases[name].function.__module__} and in "
+				f"{function.__module__}"
+			)
 		_cases[name] = Case(name, group, seconds, function, needs)
 		return function
 
@@ -205,11 +236,14 @@ def find(name):
 		if found.name == name:
 			return found
 	close = difflib.get_close_matches(name, _cases, n=3, cutoff=0.4)
-	raise ValueError(f"no case '{name}'" + (f"; did you mean {', '.join(close)}?" if close else "") + " --list shows all")
+	raise ValueError(
+		f"no case '{name}'" + (f"; did you mean {', '.join(close)}?" if close else "") + " --list shows all"
+	)
 
 
 def run(which, pictures=False, **settings):
-	"""Run a case in an empty scene and return its :class:`Result`. A case that raises has failed; what it raised is in the result.
+	"""Run a case in an empty scene and return its :class:`Result`. A case that raises has failed;
+	what it raised is in the result.
 
 	:param which: a :class:`Case` or its name
 	:param pictures: draw the pictures as well
@@ -218,7 +252,10 @@ def run(which, pictures=False, **settings):
 	which = find(which) if isinstance(which, str) else which
 	unknown = set(settings) - set(which.settings)
 	if unknown:
-		raise ValueError(f"case '{which.name}' has no setting {', '.join(sorted(unknown))}; it has {', '.join(which.settings) or 'none'}")
+		raise ValueError(
+			f"case '{which.name}' has no setting {', '.join(sorted(unknown))}; it has "
+			f"{', '.join(which.settings) or 'none'}"
+		)
 	O.reset()
 	check = Check(which.name, pictures)
 	try:

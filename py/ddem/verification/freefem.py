@@ -1,8 +1,9 @@
 # GPL v2 or later, see LICENSE.
-"""Plane-strain elasticity by FreeFem++ (F. Hecht, New development in FreeFem++, J. Numer. Math. 20, 2012): the independent finite element code of the cases.
+"""Plane-strain elasticity by FreeFem++ (F. Hecht, New development in FreeFem++, J. Numer. Math. 20, 2012):
+the independent finite element code of the cases.
 
-Debian's package is freefem++. Nothing of the plugin is in here: FreeFem++ gets a mesh, materials, loads and supports as text files and a variational form in
-its own language, assembles and solves, and writes displacements.
+Debian's package is freefem++. Nothing of the plugin is in here: FreeFem++ gets a mesh, materials, loads and supports as
+text files and a variational form in its own language, assembles and solves, and writes displacements.
 """
 import os
 import re
@@ -20,7 +21,8 @@ Ph lambda, mu;
 { ifstream file("moduli.txt"); for (int k = 0; k < Th.nt; k++) { file >> lambda[][k]; file >> mu[][k]; } }
 Vh [u, v], [p, q];
 varf stiffness([u, v], [p, q]) = int2d(Th)(
-	lambda * (dx(u) + dy(v)) * (dx(p) + dy(q)) + 2 * mu * (dx(u) * dx(p) + dy(v) * dy(q)) + mu * (dy(u) + dx(v)) * (dy(p) + dx(q)));
+	lambda * (dx(u) + dy(v)) * (dx(p) + dy(q)) + 2 * mu * (dx(u) * dx(p) + dy(v) * dy(q))
+	+ mu * (dy(u) + dx(v)) * (dy(p) + dx(q)));
 matrix K = stiffness(Vh, Vh);
 real[int] force(Vh.ndof);
 real held, value;
@@ -68,11 +70,20 @@ def run(script, nodes, triangles, tables=None, edges=()):
 		with open(os.path.join(folder, "script.edp"), "w") as file:
 			file.write(script)
 		try:
-			done = subprocess.run(["FreeFem++", "-nw", "-v", "0", "script.edp"], cwd=folder, capture_output=True, text=True, check=False)
+			done = subprocess.run(
+				["FreeFem++", "-nw", "-v", "0", "script.edp"], cwd=folder, capture_output=True,
+				text=True, check=False
+			)
 		except FileNotFoundError:
-			raise RuntimeError("FreeFem++ is missing, the independent finite element code of this case; install Debian's package freefem++") from None
+			raise RuntimeError(
+				"FreeFem++ is missing, the independent finite element code of this case; install "
+				"Debian's package freefem++"
+			) from None
 		if done.returncode:
-			raise RuntimeError(f"FreeFem++ failed with exit code {done.returncode}:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+			raise RuntimeError(
+				f"FreeFem++ failed with exit code {done.returncode}:\n"
+				f"{done.stdout[-2000:]}{done.stderr[-2000:]}"
+			)
 		return np.loadtxt(os.path.join(folder, "result.txt"))
 
 
@@ -87,7 +98,8 @@ def version():
 
 
 def _write_mesh(path, nodes, triangles, edges):
-	"""FreeFem++'s own format: counts; x y label; three nodes and a region; two nodes and a label. Numbers of nodes begin at 1."""
+	"""FreeFem++'s own format: counts; x y label; three nodes and a region; two nodes and a label.
+	Numbers of nodes begin at 1."""
 	with open(path, "w") as file:
 		file.write(f"{len(nodes)} {len(triangles)} {len(edges)}\n")
 		file.writelines(f"{x:.17g} {y:.17g} 0\n" for x, y in nodes)

@@ -16,7 +16,8 @@ _FLOOR = 1e-16  # errors below are drawn there
 
 
 def write(results, folder, command="", versions=None):
-	"""Write verification.html and its pictures into a folder, which is made when missing; returns the path of the page.
+	"""Write verification.html and its pictures into a folder, which is made when missing;
+	returns the path of the page.
 
 	:param results: list of :class:`framework.Result`, run with pictures
 	:param command: the command line that made them
@@ -26,17 +27,28 @@ def write(results, folder, command="", versions=None):
 	pictures = {}  # of each case, (picture, file name, bytes)
 	for result in results:
 		for number, picture in enumerate(result.pictures, start=1):
-			name = f"{result.case.name}_{number}.png" if len(result.pictures) > 1 else f"{result.case.name}.png"
-			pictures.setdefault(result.case.name, []).append((picture, name, _save(picture, os.path.join(folder, name))))
+			name = (
+				f"{result.case.name}_{number}.png"
+				if len(result.pictures) > 1
+				else f"{result.case.name}.png"
+			)
+			pictures.setdefault(result.case.name, []).append(
+				(picture, name, _save(picture, os.path.join(folder, name)))
+			)
 	overview = Picture(errors(results), "")
 	page = html(results, pictures, _save(overview, os.path.join(folder, "errors.png")), command, versions)
 	return pages.write(page, os.path.join(folder, "verification.html"))
 
 
 def html(results, pictures, overview, command="", versions=None):
-	"""The page; *pictures* of each case by its name, as (:class:`framework.Picture`, file name, bytes of a PNG file), *overview* the bytes of the picture of
-	all errors."""
-	filters = {"figure": lambda value: _number(value, 6), "error": lambda value: _number(value, 2), "png": pages.encoded, "indices": _with_indices}
+	"""The page; *pictures* of each case by its name, as (:class:`framework.Picture`, file name, bytes of a PNG
+	file), *overview* the bytes of the picture of all errors."""
+	filters = {
+		"figure": lambda value: _number(value, 6),
+		"error": lambda value: _number(value, 2),
+		"png": pages.encoded,
+		"indices": _with_indices,
+	}
 	records = [record for result in results for record in result.records]
 	return pages.render(
 		"verification.html",
@@ -64,16 +76,28 @@ def errors(results):
 		for row, result in enumerate(results):
 			for record in result.records:
 				error = max(record.error, _FLOOR) if np.isfinite(record.error) else 1.0
-				ax.plot([error, max(record.tolerance, _FLOOR)], [row, row], "-", color="0.85", linewidth=0.8, zorder=1)
+				ax.plot(
+					[error, max(record.tolerance, _FLOOR)], [row, row], "-", color="0.85",
+					linewidth=0.8, zorder=1
+				)
 				ax.plot(max(record.tolerance, _FLOOR), row, "|", color="0.35", markersize=5, zorder=2)
-				ax.plot(error, row, "o", color=plots.COLOURS[0 if record.passed else 1], markersize=2.8, zorder=3)
+				ax.plot(
+					error, row, "o", color=plots.COLOURS[0 if record.passed else 1], markersize=2.8,
+					zorder=3
+				)
 		ax.plot([], [], "o", color=plots.COLOURS[0], markersize=2.8, label="error")
 		ax.plot([], [], "|", color="0.35", markersize=5, label="tolerance")
 		if not all(result.passed for result in results):
 			ax.plot([], [], "o", color=plots.COLOURS[1], markersize=2.8, label="error above the tolerance")
 		ax.set_xscale("log")
 		ax.set_xlim(0.4 * _FLOOR, 3)
-		ax.set_yticks(range(len(results)), [result.case.title.replace("β_φ", r"$\beta_\varphi$").replace("→", r"$\to$") for result in results])
+		ax.set_yticks(
+			range(len(results)),
+			[
+				result.case.title.replace("β_φ", r"$\beta_\varphi$").replace("→", r"$\to$")
+				for result in results
+			],
+		)
 		ax.set_ylim(len(results) - 0.3, -0.7)
 		ax.tick_params(axis="y", length=0)
 		ax.spines[["top", "right", "left"]].set_visible(False)
@@ -90,14 +114,26 @@ def _save(picture, path):
 
 
 def _with_indices(text):
-	"""σ_xx, ė_N: what follows a single letter and an underscore becomes an index, what follows a hat an exponent; names like time_step stay."""
-	text = re.sub(r"\^(\([^()]*\)|{[^{}]*}|[\d.]*\d|\w+)", lambda found: f"<sup>{found[1].strip('(){}')}</sup>", str(escape(text)))
+	"""σ_xx, ė_N: what follows a single letter and an underscore becomes an index, what follows a hat an exponent;
+	names like time_step stay."""
+	text = re.sub(
+		r"\^(\([^()]*\)|{[^{}]*}|[\d.]*\d|\w+)",
+		lambda found: f"<sup>{found[1].strip('(){}')}</sup>",
+		str(escape(text)),
+	)
 	return Markup(re.sub(r"(?<![A-Za-z])([^\W\d_]\u0307?)_([^\W_]+)", r"\1<sub>\2</sub>", text))
 
 
 def _tightest(result):
 	"""The check of a result whose error is nearest to its tolerance, or furthest above it."""
-	return max(result.records, key=lambda record: record.error / record.tolerance if record.tolerance > 0 and np.isfinite(record.error) else np.inf)
+	return max(
+		result.records,
+		key=lambda record: (
+			record.error / record.tolerance
+			if record.tolerance > 0 and np.isfinite(record.error)
+			else np.inf
+		),
+	)
 
 
 def _number(value, digits):
@@ -108,4 +144,6 @@ def _number(value, digits):
 	if "e" not in text:
 		return text.replace("-", "−")
 	mantissa, exponent = text.split("e")
-	return f"{mantissa}·10{str(int(exponent)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}".replace("-", "−")
+	return f"{mantissa}·10{str(int(exponent)).translate(str.maketrans('-0123456789', '⁻⁰¹²³⁴⁵⁶⁷⁸⁹'))}".replace(
+		"-", "−"
+	)

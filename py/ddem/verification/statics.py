@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""Static problems solved twice: by FreeFem++ on the mesh in which every triangle is split at its centroid, and by deformable triangles."""
+"""Static problems solved twice: by FreeFem++ on the mesh in which every triangle is split at its centroid,
+and by deformable triangles."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,9 @@ class Solution:
 	"""A static solution; displacements have the vertices' rows first, then the centroids'."""
 	block: object  # ddem.Block
 	freefem: np.ndarray  # displacements by FreeFem++ (n + m, 2) [m]
-	unbalanced: float  # largest force out of balance of the deformable triangles in FreeFem++'s solution, over the largest nodal force [-]
+	# largest force out of balance of the deformable triangles in FreeFem++'s solution,
+	# over the largest nodal force [-]
+	unbalanced: float
 	relaxed: np.ndarray = None  # displacements by deformable triangles (n + m, 2) [m]
 	residual: float = None  # of the relaxation, see ddem.relax
 	steps: int = 0  # of the relaxation
@@ -26,7 +29,8 @@ class Solution:
 
 
 def split_at_centroids(mesh):
-	"""Nodes and triangles of the barycentric (Alfeld) split: the vertices first, then a centroid for each triangle."""
+	"""Nodes and triangles of the barycentric (Alfeld) split:
+	the vertices first, then a centroid for each triangle."""
 	centre = len(mesh.nodes) + np.arange(len(mesh.triangles))
 	parts = [np.column_stack([centre, mesh.triangles[:, k], mesh.triangles[:, (k + 1) % 3]]) for k in range(3)]
 	return np.vstack([mesh.nodes, mesh.centroids]), np.stack(parts, axis=1).reshape(-1, 3)
@@ -44,13 +48,19 @@ def nodal_loads(mesh, where, traction, points=8):
 	a, b = mesh.nodes[edges[:, 0]], mesh.nodes[edges[:, 1]]
 	chosen = where(*(0.5 * (a + b)).T)
 	if not np.any(chosen):
-		raise ValueError(f"where() chooses none of the {len(edges)} border edges; the mesh spans x {_span(mesh, 0)}, y {_span(mesh, 1)}")
+		raise ValueError(
+			f"where() chooses none of the {len(edges)} border edges; the mesh spans x {_span(mesh, 0)}, "
+			f"y {_span(mesh, 1)}"
+		)
 	edges, a, b = edges[chosen], a[chosen], b[chosen]
 	along, weights = np.polynomial.legendre.leggauss(points)
 	part = 0.5 * (1 + along)[:, None, None]
 	edge = b - a
 	normals = np.column_stack([edge[:, 1], -edge[:, 0]]) / np.linalg.norm(edge, axis=1)[:, None]
-	forces = traction(a + part * edge, np.broadcast_to(normals, (points, *normals.shape))) * (0.5 * weights[:, None] * np.linalg.norm(edge, axis=1))[:, :, None]
+	forces = (
+		traction(a + part * edge, np.broadcast_to(normals, (points, *normals.shape)))
+		* (0.5 * weights[:, None] * np.linalg.norm(edge, axis=1))[:, :, None]
+	)
 	loads = np.zeros(mesh.nodes.shape)
 	np.add.at(loads, edges[:, 0], ((1 - part) * forces).sum(axis=0))
 	np.add.at(loads, edges[:, 1], (part * forces).sum(axis=0))
@@ -73,7 +83,9 @@ def solve_and_balance(mesh, material, loads, held):
 	nodes, triangles = split_at_centroids(mesh)
 	count = len(mesh.nodes)
 	padding = np.zeros((len(nodes) - count, 2))
-	expected = freefem.solve(nodes, triangles, tools.lame(material), np.vstack([loads, padding]), np.vstack([held, padding > 0]))
+	expected = freefem.solve(
+		nodes, triangles, tools.lame(material), np.vstack([loads, padding]), np.vstack([held, padding > 0])
+	)
 
 	block = ddem.append(mesh, material)
 	if not np.array_equal(block.mesh.triangles, mesh.triangles):
@@ -87,29 +99,38 @@ def solve(mesh, material, loads, held, rotation="none", **relaxation):
 	solution = solve_and_balance(mesh, material, loads, held)
 	block = solution.block
 	for i, row in zip(block.node_ids, held):
-		O.bodies[int(i)].state.blockedDOFs = "z" + "".join(name for name, fixed in zip("xy", row) if fixed) + "XYZ"
+		O.bodies[int(i)].state.blockedDOFs = (
+			"z" + "".join(name for name, fixed in zip("xy", row) if fixed) + "XYZ"
+		)
 	for i, force in zip(block.node_ids, loads):
 		O.forces.setPermF(int(i), (*force, 0))
 	engine = tools.start(rotation=rotation)
 	solution.residual, solution.steps = ddem.relax(**relaxation)
-	solution.relaxed = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - np.vstack([mesh.nodes, mesh.centroids])
+	solution.relaxed = np.vstack([engine.array("nodePosition"), engine.array("corePosition")]) - np.vstack(
+		[mesh.nodes, mesh.centroids]
+	)
 	return solution
 
 
 def check_equality(check, solution, unbalanced, difference):
-	"""Record how far deformable triangles are from FreeFem++ on the split mesh: their forces in its solution, and their own solution; with both tolerances [-]."""
+	"""Record how far deformable triangles are from FreeFem++ on the split mesh: their forces in its solution, and
+	their own solution; with both tolerances [-]."""
 	source = "FreeFem++ on the split mesh"
 	check("force out of balance in FreeFem++'s solution [-]", solution.unbalanced, 0, unbalanced, source, scale=1)
 	check("difference of displacements to FreeFem++ [-]", solution.difference, 0, difference, source, scale=1)
 
 
 def _unbalanced(block, engine, displacement, loads, held):
-	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at which round-off of positions does not
-	show: the treatment is linear."""
+	"""Put everything where FreeFem++ says, one step without motion, and look at the forces. Enlarged to a strain at
+	which round-off of positions does not show: the treatment is linear."""
 	members = tools.bodies(block)
 	reference = [body.state.refPos for body in members]
 	corners = displacement[block.mesh.triangles]
-	scale = 0.1 / (np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1) / block.mesh.sizes).max()  # largest gradient about 0.1
+	# largest gradient about 0.1
+	scale = (
+		0.1
+		/ (np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1) / block.mesh.sizes).max()
+	)
 	for body, (x, y, _), (u, v) in zip(members, reference, displacement):
 		body.state.blockedDOFs = "xyzXYZ"
 		body.state.pos = (x + scale * u, y + scale * v, 0)
@@ -124,7 +145,8 @@ def _unbalanced(block, engine, displacement, loads, held):
 
 
 def recover(points, values, at, radius):
-	"""Values (…,) at a place from those at points around it: the quadratic of least squares over the points within the radius [m]; needs 12 of them.
+	"""Values (…,) at a place from those at points around it: the quadratic of least squares over the points within
+	the radius [m]; needs 12 of them.
 
 	:param points: (n, 2) [m]
 	:param values: (n, …)

@@ -30,7 +30,8 @@ def lame(material):
 
 
 def start(*engines, step=0.8, **settings):
-	"""Set O.engines (the others before the DeformableEngine) and a time step of *step* times the critical one; returns the DeformableEngine."""
+	"""Set O.engines (the others before the DeformableEngine) and a time step of *step* times the critical one;
+	returns the DeformableEngine."""
 	engine = DeformableEngine(**settings)
 	O.engines = [ForceResetter(), *engines, engine]
 	O.dt = step * engine.criticalTimeStep()
@@ -61,7 +62,8 @@ def place(block, move):
 
 
 def set_velocity(block, velocity, spin=0.0):
-	"""Give nodes and cores the velocity(x, y) [m/s] of their place (arrays), and cores the spin [rad/s], a number or a function of x and y."""
+	"""Give nodes and cores the velocity(x, y) [m/s] of their place (arrays), and cores the spin [rad/s],
+	a number or a function of x and y."""
 	members = bodies(block)
 	x, y = np.array([body.state.pos for body in members])[:, :2].T
 	for body, vx, vy in zip(members, *np.broadcast_arrays(*velocity(x, y), x)[:2]):
@@ -75,14 +77,18 @@ _recorders = weakref.WeakValueDictionary()  # by number, for PyRunner
 
 
 class Recorder:
-	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the DeformableEngine, so that positions are those of the
-	time. Keep the recorder itself as long as it runs."""
+	"""Keeps what function() returns, with the time, every so many steps; put :attr:`engine` before the
+	DeformableEngine, so that positions are those of the time. Keep the recorder itself as long as it runs."""
 
 	def __init__(self, function, every):
 		self._function, self._rows = function, []
 		_recorders[id(self)] = self
 		#: to be put into O.engines
-		self.engine = PyRunner(command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{id(self)}]._take()", iterPeriod=every, initRun=True)
+		self.engine = PyRunner(
+			command=f"__import__('{__name__}', fromlist=['_recorders'])._recorders[{id(self)}]._take()",
+			iterPeriod=every,
+			initRun=True,
+		)
 
 	def _take(self):
 		self._rows.append((O.time, np.array(self._function(), float)))
@@ -99,7 +105,8 @@ class Recorder:
 
 
 def fit_frequencies(times, signal, guesses):
-	"""Angular frequencies [rad/s], near the guesses, of the harmonic oscillations whose sum is closest to the signal (least squares), a constant left free."""
+	"""Angular frequencies [rad/s], near the guesses, of the harmonic oscillations whose sum is closest to the
+	signal (least squares), a constant left free."""
 	guesses = np.atleast_1d(np.asarray(guesses, float))
 
 	def misfit(scaled):
@@ -108,7 +115,12 @@ def fit_frequencies(times, signal, guesses):
 		return basis @ np.linalg.lstsq(basis, signal, rcond=None)[0] - signal
 
 	scale = np.abs(signal).max()
-	return least_squares(lambda scaled: misfit(scaled) / scale, np.ones(len(guesses)), xtol=1e-12, ftol=1e-14, gtol=1e-14).x * guesses
+	return (
+		least_squares(
+			lambda scaled: misfit(scaled) / scale, np.ones(len(guesses)), xtol=1e-12, ftol=1e-14, gtol=1e-14
+		).x
+		* guesses
+	)
 
 
 def axes(width=plots.COLUMN, height=None, panels=1, **options):
@@ -125,4 +137,7 @@ def axes(width=plots.COLUMN, height=None, panels=1, **options):
 def legend(ax, columns=2, **options):
 	"""A legend above the axes, where it covers nothing."""
 	with rc_context(plots.STYLE):
-		ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2, columnspacing=1.2, handlelength=1.6, **options)
+		ax.legend(
+			loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, borderaxespad=0.2,
+			columnspacing=1.2, handlelength=1.6, **options
+		)

@@ -64,7 +64,9 @@ class YadeReference(ReferenceRole):
 		if yade_object(self.target) is None:
 			message = f"YADE has no '{self.target}' (:yref:)"
 			return [shown], [self.inliner.reporter.warning(message, line=self.lineno)]
-		reference = addnodes.pending_xref(self.rawtext, shown, refdomain="", reftype="yref", reftarget=self.target)
+		reference = addnodes.pending_xref(
+			self.rawtext, shown, refdomain="", reftype="yref", reftarget=self.target
+		)
 		reference["refexplicit"] = reference["refwarn"] = True
 		self.set_source_info(reference)
 		return [reference], []
@@ -241,7 +243,8 @@ def method_text(documented, name):
 	shown = []
 	for arguments, _, body in zip(parts[1::3], parts[2::3], parts[3::3]):
 		found = re.findall(r"\([^()]*\)(\w+(?:=[^,\]]+)?)", arguments)
-		names = ", ".join(name for name in found if not re.match(r"arg\d", name))  # without self, which has no name
+		# without self, which has no name
+		names = ", ".join(name for name in found if not re.match(r"arg\d", name))
 		head = f".. py:method:: {documented.__name__}.{name}({names})\n{static}\n"
 		shown.append(head + indented(cited(textwrap.dedent(body).strip())))
 	return "\n\n".join(shown)

@@ -7,8 +7,8 @@
 	record = ddem.studies.esys.run(ddem.studies.esys.Setup(sample, dt=1e-8, steps=25000), folder="out/esys")
 	record.series["stress"], record.nanoseconds
 
-Needs Debian's package esys-particle; ``scripts/ddem run`` installs it for scripts that say ``# needs: esys-particle``. Nothing here needs YADE.
-The input script of ESyS-Particle is compression.py, which says what the model is.
+Needs Debian's package esys-particle; ``scripts/ddem run`` installs it for scripts that say ``# needs: esys-particle``.
+Nothing here needs YADE. The input script of ESyS-Particle is compression.py, which says what the model is.
 """
 import collections
 import contextlib
@@ -23,18 +23,21 @@ import numpy as np
 from ...packing import Packing
 from ...series import Series
 
-UNITS = {"strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "broken": "-"}  #: columns of a record, beside time
+#: columns of a record, beside time
+UNITS = {"strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "broken": "-"}
 _INPUT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "compression.py")
 _WRITTEN = ("position.dat", "force.dat", "bonds.dat", "finished.json")
-# Bound to no core, as YADE is not; more processes than cores are allowed; all on this machine, so that no network is looked for; a process that waits lets
-# others have its core, without which the run comes almost to a stop where other programs want the cores.
+# Bound to no core, as YADE is not; more processes than cores are allowed; all on this machine, so that no network is
+# looked for; a process that waits lets others have its core, without which the run comes almost to a stop where other
+# programs want the cores.
 _MPI = ("--bind-to", "none", "--oversubscribe", "--mca", "btl", "self,sm", "--mca", "mpi_yield_when_idle", "1")
 _LAST_WORDS = 15  # lines of the output that go into an error
 
 
 @dataclass(frozen=True)
 class Setup:
-	"""A compression test of bonded spheres between two elastic walls, which move along y towards each other; defaults as in ESyS-Particle's tutorial."""
+	"""A compression test of bonded spheres between two elastic walls, which move along y towards each other;
+	defaults as in ESyS-Particle's tutorial."""
 	packing: Packing  # with its bonds; the walls start at the lower and upper face of its box
 	dt: float  # time step [s]
 	steps: int
@@ -58,9 +61,15 @@ class Setup:
 		if self.mass_law not in ("cube", "solid"):
 			raise ValueError(f"mass_law = '{self.mass_law}' must be cube or solid")
 		if not (self.dt > 0 and self.steps >= 2 and self.every >= 1 and self.ramp_steps >= 0):
-			raise ValueError(f"dt = {self.dt} s, steps = {self.steps} (at least 2) and every = {self.every} must be positive, ramp_steps = {self.ramp_steps} not negative")
+			raise ValueError(
+				f"dt = {self.dt} s, steps = {self.steps} (at least 2) and every = {self.every} must "
+				f"be positive, ramp_steps = {self.ramp_steps} not negative"
+			)
 		if self.steps % self.every:
-			raise ValueError(f"steps = {self.steps} must be a multiple of every = {self.every}, so that the last one is recorded")
+			raise ValueError(
+				f"steps = {self.steps} must be a multiple of every = {self.every}, so that the last "
+				"one is recorded"
+			)
 
 	@property
 	def area(self):
@@ -73,8 +82,10 @@ class Record:
 	"""A finished test."""
 	program: str
 	setup: Setup
-	series: Series = field(default_factory=lambda: Series(time="s", **UNITS))  # see UNITS; compression positive; broken counts bonds
-	pieces: list = field(default_factory=list)  # wall time from record to record without the first step, with recording [s]
+	# see UNITS; compression positive; broken counts bonds
+	series: Series = field(default_factory=lambda: Series(time="s", **UNITS))
+	# wall time from record to record without the first step, with recording [s]
+	pieces: list = field(default_factory=list)
 	threads: int = 1  # that calculate
 
 	@property
@@ -103,10 +114,18 @@ def run(setup, folder, workers=1, progress=lambda step: None):
 	"""
 	programs = [shutil.which(name) for name in ("mpirun", "esysparticle")]
 	if None in programs:
-		raise RuntimeError("ESyS-Particle is not installed on this machine: apt-get install esys-particle, or start the script with scripts/ddem run")
+		raise RuntimeError(
+			"ESyS-Particle is not installed on this machine: apt-get install esys-particle, or start the "
+			"script with scripts/ddem run"
+		)
 	write_input(setup, folder, workers)
 	command = [programs[0], *_MPI, "-n", str(workers + 1), programs[1], _INPUT]
-	environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+	environment = {
+		**os.environ,
+		"OMPI_ALLOW_RUN_AS_ROOT": "1",
+		"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+		"PYTHONDONTWRITEBYTECODE": "1",
+	}
 	streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
 	last = collections.deque(maxlen=_LAST_WORDS)
 	with _ended(subprocess.Popen(command, cwd=folder, env=environment, **streams)) as process:
@@ -117,19 +136,30 @@ def run(setup, folder, workers=1, progress=lambda step: None):
 				last.append(line.rstrip())
 		code = process.wait()
 	if code != 0 or not os.path.exists(os.path.join(folder, "finished.json")):
-		raise RuntimeError(f"ESyS-Particle has failed (exit code {code}); its last words in {folder}:\n" + "\n".join(last))
+		raise RuntimeError(
+			f"ESyS-Particle has failed (exit code {code}); its last words in {folder}:\n" + "\n".join(last)
+		)
 	return read_output(setup, folder, workers)
 
 
 def undisturbed(records):
-	"""One record of several runs of the same test, which only differ in time: of each piece the shortest, so that what else the machine does counts little."""
+	"""One record of several runs of the same test, which only differ in time: of each piece the shortest, so that
+	what else the machine does counts little."""
 	return replace(records[0], pieces=np.min([record.pieces for record in records], axis=0).tolist())
 
 
 def version():
 	"""Version of the installed package, as "2.3.5+dfsg2-11"; None when no package manager knows it."""
 	try:
-		return subprocess.run(["dpkg-query", "-W", "-f", "${Version}", "esys-particle"], capture_output=True, text=True, check=True).stdout or None
+		return (
+			subprocess.run(
+				["dpkg-query", "-W", "-f", "${Version}", "esys-particle"],
+				capture_output=True,
+				text=True,
+				check=True,
+			).stdout
+			or None
+		)
 	except (OSError, subprocess.CalledProcessError):
 		return None
 
@@ -146,7 +176,8 @@ def write_input(setup, folder, workers=1):
 
 
 def parameters(setup, workers=1):
-	"""What compression.py reads from parameters.json: lengths in mm, times in ms, stresses in MPa, densities in g/mm³."""
+	"""What compression.py reads from parameters.json: lengths in mm, times in ms, stresses in MPa,
+	densities in g/mm³."""
 	packing, largest = setup.packing, setup.packing.radii.max()
 	margin = packing.size.max()
 	mm, ms, mpa = 1e3, 1e3, 1e-6
@@ -181,7 +212,10 @@ def read_output(setup, folder, workers=1):
 	:raises ValueError: a file is not what it should be: which, and what is wrong
 	"""
 	rows = setup.steps // setup.every + 1
-	position, force, bonds = (_table(os.path.join(folder, name), rows, columns) for name, columns in (("position.dat", 6), ("force.dat", 6), ("bonds.dat", 1)))
+	position, force, bonds = (
+		_table(os.path.join(folder, name), rows, columns)
+		for name, columns in (("position.dat", 6), ("force.dat", 6), ("bonds.dat", 1))
+	)
 	with open(os.path.join(folder, "finished.json")) as file:
 		pieces = json.load(file)["pieces"]
 	# Columns 1 and 4 are along y, of the bottom and of the top wall. Forces are those of the walls on the spheres.
@@ -206,7 +240,9 @@ def _table(path, rows, columns):
 	except ValueError as error:
 		raise ValueError(f"{path}: {error}") from None
 	if table.shape != (rows, columns):
-		raise ValueError(f"{path}: {table.shape[0]} rows of {table.shape[1]} numbers instead of {rows} of {columns}")
+		raise ValueError(
+			f"{path}: {table.shape[0]} rows of {table.shape[1]} numbers instead of {rows} of {columns}"
+		)
 	return table
 
 

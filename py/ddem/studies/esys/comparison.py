@@ -38,15 +38,19 @@ def figures(record):
 		"ns_per_bond_step": record.nanoseconds * len(record.setup.packing) / len(record.setup.packing.bonds),
 		"threads": record.threads,
 	}
-	return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in values.items()}
+	return {
+		name: None if isinstance(value, float) and not math.isfinite(value) else value
+		for name, value in values.items()
+	}
 
 
 def differences(first, second, part=FIT[1]):
 	"""How the second record departs from the first.
 
 	:param part: of the first's strength, up to which stresses are compared
-	:returns: largest difference of stress on the way there [MPa] as ``stress_MPa``, and where it first exceeds 1e-3 MPa in the whole test, as
-		``equal_up_to_percent`` of the first's strength; 100 when that is beyond the peak
+	:returns: largest difference of stress on the way there [MPa] as ``stress_MPa``, and where it first exceeds 1e-3
+		MPa in the whole test, as ``equal_up_to_percent`` of the first's strength; 100 when that is beyond the
+		peak
 	:raises ValueError: records of different tests
 	"""
 	if not np.allclose(first.series["time"], second.series["time"], rtol=1e-9, atol=0):
@@ -56,7 +60,11 @@ def differences(first, second, part=FIT[1]):
 	measures = strength(first.series["strain"], stress)
 	reached = int(np.argmax(stress >= part * measures.ucs))
 	beyond = np.flatnonzero(apart > 1e3)
-	equal = stress[:beyond[0]].max(initial=0.0) / measures.ucs if len(beyond) and beyond[0] <= measures.peak else 1.0
+	equal = (
+		stress[: beyond[0]].max(initial=0.0) / measures.ucs
+		if len(beyond) and beyond[0] <= measures.peak
+		else 1.0
+	)
 	return {"stress_MPa": float(apart[:reached + 1].max() / 1e6), "equal_up_to_percent": 100 * float(equal)}
 
 
@@ -69,13 +77,20 @@ def table(first, second):
 		shown = [form.format(value) if value is not None else "-" for value in values]
 		lines.append((text, unit, *shown, _change(unit, *values)))
 	widths = [max(len(line[column]) for line in lines) for column in range(5)]
-	rows = [f"{line[0]:<{widths[0]}}  {line[1]:<{widths[1]}}  " + "  ".join(f"{line[c]:>{widths[c]}}" for c in (2, 3, 4)) for line in lines]
+	rows = [
+		f"{line[0]:<{widths[0]}}  {line[1]:<{widths[1]}}  "
+		+ "  ".join(f"{line[c]:>{widths[c]}}" for c in (2, 3, 4))
+		for line in lines
+	]
 	rows.insert(1, "-" * len(rows[0]))
 	rows += [
 		"",
 		f"largest difference of stress up to {100 * FIT[1]:.0f} % of the peak: {apart['stress_MPa']:.1e} MPa; "
 		f"below 1e-3 MPa up to {apart['equal_up_to_percent']:.0f} %",
-		f"{second.program} takes {other['ns_per_particle_step'] / one['ns_per_particle_step']:.2f} of the time of {first.program} per particle and step"
+		(
+			f"{second.program} takes {other['ns_per_particle_step'] / one['ns_per_particle_step']:.2f} of "
+			f"the time of {first.program} per particle and step"
+		),
 	]
 	return "\n".join(line.rstrip() for line in rows)
 
@@ -98,10 +113,15 @@ def picture(first, second):
 		above, middle, below = fig.subplots(3, 1, sharex=True, height_ratios=(3, 2, 2))
 		for record, colour, width in zip((first, second), _COLOURS, _WIDTHS):
 			strain = 100 * record.series["strain"]
-			above.plot(strain, record.series["stress"] / 1e6, color=colour, linewidth=width, label=record.program)
+			above.plot(
+				strain, record.series["stress"] / 1e6, color=colour, linewidth=width,
+				label=record.program
+			)
 			middle.plot(strain, 100 * record.broken_share, color=colour, linewidth=width)
 		apart = np.abs(second.series["stress"] - first.series["stress"]) / 1e6
-		below.semilogy(100 * first.series["strain"], np.where(apart > 0, apart, np.nan), color="0.3", linewidth=0.6)
+		below.semilogy(
+			100 * first.series["strain"], np.where(apart > 0, apart, np.nan), color="0.3", linewidth=0.6
+		)
 		above.set_ylabel("axial stress [MPa]")
 		middle.set_ylabel("broken bonds [%]")
 		below.set_ylabel("difference\nof stress [MPa]")

@@ -1,15 +1,18 @@
 # GPL v2 or later, see LICENSE.
 """Notched beam in three-point bending, in plane strain: a crack grows from the notch to the load.
 
-The beam stands on two nodes and is pushed by the nodes of a strip on the top, whose speed grows to 0.05 m/s. Inertia is measured: by the difference between the
-load and the reactions of the supports, and by the kinetic energy. Around supports and load the concrete is elastic, so that it does not crush there.
+The beam stands on two nodes and is pushed by the nodes of a strip on the top, whose speed grows to 0.05 m/s. Inertia is
+measured: by the difference between the load and the reactions of the supports, and by the kinetic energy. Around
+supports and load the concrete is elastic, so that it does not crush there.
 """
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
 
-from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, ForceResetter, O, RampedTranslationEngine, ddem
+from yade import (
+	ConcreteDamageMat, DeformableElastMat, DeformableEngine, ForceResetter, O, RampedTranslationEngine, ddem
+)
 
 from ...materialpoint import MaterialPoint, concrete
 from ...series import Series
@@ -44,12 +47,16 @@ class History:
 	@property
 	def series(self):
 		"""What is recorded, as a :class:`Series`."""
-		units = {"deflection": "m", "force": "N/m", "reaction": "N/m", "opening": "m", "dissipated": "J/m", "kinetic": "J/m"}
+		units = {
+			"deflection": "m", "force": "N/m", "reaction": "N/m", "opening": "m", "dissipated": "J/m",
+			"kinetic": "J/m"
+		}
 		return Series.of(units, **{name: getattr(self, name) for name in units})
 
 	@property
 	def imbalance(self):
-		"""Largest difference between load and reactions over the largest load [-]: what inertia takes part in."""
+		"""Largest difference between load and reactions over the largest load [-]:
+		what inertia takes part in."""
 		return np.abs(self.force - self.reaction).max() / self.force.max()
 
 	@property
@@ -59,22 +66,32 @@ class History:
 		return (self.kinetic[loaded] / self.work[loaded]).max()
 
 	def crack(self, low=NOTCH, high=HEIGHT - 0.015):
-		"""Where the crack runs: heights [m] and its x [m], the mean place of the damage in strips above the notch."""
+		"""Where the crack runs: heights [m] and its x [m], the mean place of the damage in
+		strips above the notch."""
 		centres, damage = self.mesh.centroids, self.damage.mean(axis=1)
 		weights = np.where(damage > 0.5, damage, 0) * self.mesh.areas
 		edges = np.linspace(low, high, 9)
 		strips = [(centres[:, 1] >= a) & (centres[:, 1] < b) & (weights > 0) for a, b in zip(edges, edges[1:])]
-		found = [(0.5 * (a + b), np.average(centres[strip, 0], weights=weights[strip])) for a, b, strip in zip(edges, edges[1:], strips) if strip.any()]
+		found = [
+			(0.5 * (a + b), np.average(centres[strip, 0], weights=weights[strip]))
+			for a, b, strip in zip(edges, edges[1:], strips)
+			if strip.any()
+		]
 		return np.array(found).reshape(-1, 2).T
 
 
 def mesh(size=0.005, coarse=0.015, seed=None):
-	"""Irregular mesh, of *size* [m] in the middle and *coarse* towards the ends; regions "left", "right" and "top" are the elastic pads."""
+	"""Irregular mesh, of *size* [m] in the middle and *coarse* towards the ends;
+	regions "left", "right" and "top" are the elastic pads."""
 	middle, half = LENGTH / 2, SLOT / 2
-	outline = [(0, 0), (middle - half, 0), (middle - half, NOTCH), (middle + half, NOTCH), (middle + half, 0), (LENGTH, 0), (LENGTH, HEIGHT), (0, HEIGHT)]
+	outline = [
+		(0, 0), (middle - half, 0), (middle - half, NOTCH), (middle + half, NOTCH), (middle + half, 0),
+		(LENGTH, 0), (LENGTH, HEIGHT), (0, HEIGHT)
+	]
 	left, right = 0.5 * (LENGTH - SPAN), 0.5 * (LENGTH + SPAN)
 	pads = {
-		"left": ddem.mesh.box(left - PAD, 0, left + PAD, PAD), "right": ddem.mesh.box(right - PAD, 0, right + PAD, PAD),
+		"left": ddem.mesh.box(left - PAD, 0, left + PAD, PAD),
+		"right": ddem.mesh.box(right - PAD, 0, right + PAD, PAD),
 		"top": ddem.mesh.box(middle - PAD, HEIGHT - PAD, middle + PAD, HEIGHT)
 	}
 	field = lambda x, y: min(coarse, size + 0.25 * max(0.0, abs(x - middle) - 0.03))
@@ -82,10 +99,11 @@ def mesh(size=0.005, coarse=0.015, seed=None):
 
 
 def opening_compliance():
-	"""Opening of the notch's mouth over the load per thickness [m²/N] of the elastic beam: Tada, Paris and Irwin, The stress analysis of cracks handbook (1985),
-	p. 2.16.
+	"""Opening of the notch's mouth over the load per thickness [m²/N] of the elastic beam: Tada, Paris and Irwin,
+	The stress analysis of cracks handbook (1985), p. 2.16.
 
-	For a sharp crack and a span of four times the height, 4 σ a V₁(a/W)/E' with σ = 3PS/2W² and V₁ within 1 %; E' = E/(1 − ν²) in plane strain.
+	For a sharp crack and a span of four times the height, 4 σ a V₁(a/W)/E' with σ = 3PS/2W² and V₁ within 1 %;
+	E' = E/(1 − ν²) in plane strain.
 	"""
 	a = NOTCH / HEIGHT
 	v1 = 0.76 - 2.28 * a + 3.87 * a**2 - 2.04 * a**3 + 0.66 / (1 - a)**2
@@ -93,27 +111,41 @@ def opening_compliance():
 
 
 def crack_energy(opening, duration, energy=ENERGY):
-	"""(tensile strength [Pa], energy per area [J/m²]) of a band of the width :data:`BAND` that opens so far [m] in that time [s]: a material point in tension.
+	"""(tensile strength [Pa], energy per area [J/m²]) of a band of the width :data:`BAND` that opens so far [m] in
+	that time [s]: a material point in tension.
 
-	There is no energy per area at which the crack is open: with σ falling as 1/Ω² (see :mod:`yade.ddem.crackband`) it grows as the cube root of the opening.
+	There is no energy per area at which the crack is open: with σ falling as 1/Ω² (see :mod:`yade.ddem.crackband`)
+	it grows as the cube root of the opening.
 	"""
-	point = MaterialPoint(concrete(fractureEnergy=energy)).path(duration, strain={"xx": opening / BAND}, stress={"yy": 0.0}, steps=round(opening / BAND / 1e-5))
+	point = MaterialPoint(concrete(fractureEnergy=energy)).path(
+		duration, strain={"xx": opening / BAND}, stress={"yy": 0.0}, steps=round(opening / BAND / 1e-5)
+	)
 	return point.stress[:, 0].max(), BAND * (point.plastic_dissipation[-1] + point.damage_dissipation[-1])
 
 
 def bending_strength(tensile_strength):
-	"""Load per thickness [N/m] at which the section above the notch, bent elastically without a notch's effect, has that stress [Pa] at its edge."""
+	"""Load per thickness [N/m] at which the section above the notch, bent elastically without a notch's effect, has
+	that stress [Pa] at its edge."""
 	return tensile_strength * (HEIGHT - NOTCH)**2 / 6 * 4 / SPAN
 
 
 def toughness_strength(energy):
-	"""Load per thickness [N/m] at which a sharp crack of the notch's depth grows, if it takes that energy [J/m²]: K² = G E', with K of ASTM E399, annex A3."""
+	"""Load per thickness [N/m] at which a sharp crack of the notch's depth grows, if it takes that energy [J/m²]:
+	K² = G E', with K of ASTM E399, annex A3."""
 	a = NOTCH / HEIGHT
-	shape = 3 * np.sqrt(a) * (1.99 - a * (1 - a) * (2.15 - 3.93 * a + 2.7 * a**2)) / (2 * (1 + 2 * a) * (1 - a)**1.5)
+	shape = (
+		3
+		* np.sqrt(a)
+		* (1.99 - a * (1 - a) * (2.15 - 3.93 * a + 2.7 * a**2))
+		/ (2 * (1 + 2 * a) * (1 - a)**1.5)
+	)
 	return np.sqrt(energy * MODULUS) * HEIGHT**1.5 / (SPAN * shape)
 
 
-def run(size=0.005, velocity=0.05, ramp=4e-3, deflection=3e-4, energy=ENERGY, crack_band=None, seed=None, elastic=False, step=0.8, records=300, recorders=()):
+def run(
+	size=0.005, velocity=0.05, ramp=4e-3, deflection=3e-4, energy=ENERGY, crack_band=None, seed=None, elastic=False,
+	step=0.8, records=300, recorders=()
+):
 	"""Bend the beam and return its :class:`History`.
 
 	:param size: of the mesh in the middle [m]
@@ -128,9 +160,16 @@ def run(size=0.005, velocity=0.05, ramp=4e-3, deflection=3e-4, energy=ENERGY, cr
 	O.materials.append(DeformableElastMat(label="elastic", **CONCRETE))
 	O.materials.append(ConcreteDamageMat(label="concrete", fractureEnergy=energy))
 	pads = dict.fromkeys(("left", "right", "top"), "elastic")
-	block = ddem.append(mesh(size, seed=seed), {"": "elastic" if elastic else "concrete", **pads}, crack_band=crack_band)
+	block = ddem.append(
+		mesh(size, seed=seed), {"": "elastic" if elastic else "concrete", **pads}, crack_band=crack_band
+	)
 	loaded, stands = supports(block)
-	push = RampedTranslationEngine(ids=[int(i) for i in block.node_ids[loaded]], translationAxis=(0, -1, 0), velocity=velocity, rampTime=ramp)
+	push = RampedTranslationEngine(
+		ids=[int(i) for i in block.node_ids[loaded]],
+		translationAxis=(0, -1, 0),
+		velocity=velocity,
+		rampTime=ramp,
+	)
 	engine = DeformableEngine(label="deformable")
 	O.engines = [ForceResetter(), push, engine]
 	O.dt = step * engine.criticalTimeStep()
@@ -144,11 +183,15 @@ def run(size=0.005, velocity=0.05, ramp=4e-3, deflection=3e-4, energy=ENERGY, cr
 		parts, moved, forces = book.record(), block.displacements, block.node_forces[:, 1] / block.thickness
 		return (
 			-moved[loaded, 1].mean(), forces[loaded].sum(), moved[mouth[1], 0] - moved[mouth[0], 0],
-			(parts.get("plasticFlow", 0) + parts.get("damage", 0)) / block.thickness, -forces[stands].sum(), parts["kinetic"] / block.thickness
+			(parts.get("plasticFlow", 0) + parts.get("damage", 0)) / block.thickness, -forces[stands].sum(),
+			parts["kinetic"] / block.thickness
 		)
 
 	rows = advance(steps, records, row, writers)
-	return History(block.mesh, *np.array(rows).T, np.array(block.positions), np.array(block.sub_element_damage), book.largest)
+	return History(
+		block.mesh, *np.array(rows).T, np.array(block.positions), np.array(block.sub_element_damage),
+		book.largest
+	)
 
 
 def supports(block):

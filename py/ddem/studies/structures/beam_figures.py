@@ -6,7 +6,8 @@ from ... import plots
 
 
 def bending(beams, shown, scale=20):
-	"""Force over deflection on several meshes with and without the crack band, by (corrected?, size), and the damage of one of them on the deformed beam."""
+	"""Force over deflection on several meshes with and without the crack band, by (corrected?, size), and the
+	damage of one of them on the deformed beam."""
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE, 112)
 		fig.set_layout_engine("constrained")
@@ -16,8 +17,18 @@ def bending(beams, shown, scale=20):
 			ax = places[corrected]
 			for number, size in enumerate(sizes):
 				one = beams[corrected, size]
-				ax.plot(1e3 * one.deflection, one.force / 1e3, color=plots.COLOURS[number], label=f"{1e3 * size:g} mm")
-				ax.plot(1e3 * one.deflection, one.reaction / 1e3, color=plots.COLOURS[number], linewidth=0.4)
+				ax.plot(
+					1e3 * one.deflection,
+					one.force / 1e3,
+					color=plots.COLOURS[number],
+					label=f"{1e3 * size:g} mm",
+				)
+				ax.plot(
+					1e3 * one.deflection,
+					one.reaction / 1e3,
+					color=plots.COLOURS[number],
+					linewidth=0.4,
+				)
 			ax.set_title("$G_f$ with crack band" if corrected else "$G_f$ per volume")
 			ax.set_xlabel("deflection [mm]")
 			ax.set_ylim(0, 1.25 * max(one.force.max() for one in beams.values()) / 1e3)
@@ -26,5 +37,8 @@ def bending(beams, shown, scale=20):
 		places[False].plot([], [], "k", linewidth=0.4, label="supports")
 		places[False].legend(title="size")
 		one, ax = beams[shown], places["map"]
-		plots.field(one.mesh, one.damage, "damage $\\eta/\\eta_{max}$ [-]", ax=ax, displacement=one.nodes - one.mesh.nodes, scale=scale, limits=(0, 1))
+		plots.field(
+			one.mesh, one.damage, "damage $\\eta/\\eta_{max}$ [-]", ax=ax,
+			displacement=one.nodes - one.mesh.nodes, scale=scale, limits=(0, 1)
+		)
 	return fig

@@ -44,12 +44,22 @@ class History:
 		return Series.of({"strain": "-", "stress": "Pa"}, strain=self.strain, stress=self.stress)
 
 	def bands(self, width=0.015):
-		"""The band of damage that rises to the right and the one that rises to the left: (angle to the horizontal [°], share [-]) each.
+		"""The band of damage that rises to the right and the one that rises to the left:
+		(angle to the horizontal [°], share [-]) each.
 
-		The block is cut into parallel strips of that width [m]; share is how much of the variance of the damage lies between strips rather than within them, and the
-		angle, from 40° to 85°, is that with the largest share. One band, as wide as a strip, in an intact block has a share of 0.5 to 1.
+		The block is cut into parallel strips of that width [m]; share is how much of the variance of the damage
+		lies between strips rather than within them, and the angle, from 40° to 85°, is that with the largest
+		share. One band, as wide as a strip, in an intact block has a share of 0.5 to 1.
 		"""
-		return tuple(max(((sum(self._share(sign * angle, width, shift) for shift in (0, 0.5)) / 2, angle) for angle in range(40, 86)))[::-1] for sign in (1, -1))
+		return tuple(
+			max(
+				(
+					(sum(self._share(sign * angle, width, shift) for shift in (0, 0.5)) / 2, angle)
+					for angle in range(40, 86)
+				)
+			)[::-1]
+			for sign in (1, -1)
+		)
 
 	def _share(self, angle, width, shift):
 		"""Variance of the damage between strips under an angle [°] over its variance."""
@@ -62,7 +72,10 @@ class History:
 		return float((strips**2 / np.maximum(parts, 1e-30)).sum() / total) if total > 0 else 0.0
 
 
-def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0.5, strain=0.01, rotation="cosserat", step=0.6, records=300, recorders=()):
+def run(
+	pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0.5, strain=0.01, rotation="cosserat",
+	step=0.6, records=300, recorders=()
+):
 	"""Press the sides, crush the block and return its :class:`History`.
 
 	:param pressure: on the sides [Pa], a dead load on the undeformed sides
@@ -74,7 +87,9 @@ def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0
 	:param recorders: functions of the block that make a recorder; it is called at 50 moments
 	"""
 	O.materials.append(ConcreteDamageMat(label="concrete"))
-	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, size, pattern=pattern, **({"seed": 1} if pattern == "unstructured" else {}))
+	mesh = ddem.mesh.rectangle(
+		WIDTH, HEIGHT, size, pattern=pattern, **({"seed": 1} if pattern == "unstructured" else {})
+	)
 	block = ddem.append(mesh, "concrete", seed=seed)
 	platens = ddem.platens(block, velocity, RAMP, lateral="free", both=True)
 	block.hold(_middle(block), "x")
@@ -103,7 +118,8 @@ def run(pressure, ends="rough", seed=1, size=0.01, pattern="crossed", velocity=0
 	rows = advance(steps, records, row, writers)
 	strains, stresses, laterals, damages = np.array(rows).T
 	return History(
-		block.mesh, pressure, 2 * velocity / HEIGHT, strains, stresses, laterals, np.array(block.positions), np.array(block.sub_element_damage),
+		block.mesh, pressure, 2 * velocity / HEIGHT, strains, stresses, laterals, np.array(block.positions),
+		np.array(block.sub_element_damage),
 		damages[stresses.argmax()], book.largest
 	)
 
@@ -128,16 +144,23 @@ def _pressing(block, pressure):
 			ids = [int(i) for i in block.node_ids[rows[np.isclose(shares, share)]]]
 			forces = pressure * share * block.thickness * grows
 			engines.append(
-				InterpolatingDirectedForceEngine(ids=ids, direction=(direction, 0, 0), times=(PRESSING * parts).tolist(), magnitudes=forces.tolist())
+				InterpolatingDirectedForceEngine(
+					ids=ids,
+					direction=(direction, 0, 0),
+					times=(PRESSING * parts).tolist(),
+					magnitudes=forces.tolist(),
+				)
 			)
 	return engines
 
 
 def material_point(pressure, rate, strain=0.01):
-	"""The same test on one point in plane strain: axial strains [-], axial stresses and σ_zz [Pa], compression positive, from the start of the platens.
+	"""The same test on one point in plane strain: axial strains [-], axial stresses and σ_zz [Pa], compression
+	positive, from the start of the platens.
 
-	Its ε_zz stays zero from the beginning, so σ_zz is what the law makes of it: with the concrete of Tables 1 and 2, at the peak, 10, 31, 53 and 75 MPa under 0,
-	20, 40 and 60 MPa at 10 /s. That is why strengths are not those of a cylinder in a pressure cell (105, 187, 261 and 329 MPa).
+	Its ε_zz stays zero from the beginning, so σ_zz is what the law makes of it: with the concrete of Tables 1 and
+	2, at the peak, 10, 31, 53 and 75 MPa under 0, 20, 40 and 60 MPa at 10 /s. That is why strengths are not those
+	of a cylinder in a pressure cell (105, 187, 261 and 329 MPa).
 	"""
 	from ...materialpoint import MaterialPoint
 	point = MaterialPoint()

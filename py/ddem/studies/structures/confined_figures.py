@@ -20,7 +20,9 @@ def strength(rough, smooth):
 		places = fig.subplot_mosaic(wide + [list(range(columns))], height_ratios=(1, 1.15))
 		for number, one in enumerate(rough):
 			colour = plots.COLOURS[number]
-			places["curves"].plot(100 * one.strain, one.stress / 1e6, color=colour, label=f"{one.pressure / 1e6:g} MPa")
+			places["curves"].plot(
+				100 * one.strain, one.stress / 1e6, color=colour, label=f"{one.pressure / 1e6:g} MPa"
+			)
 			strain, stress, _ = confined.material_point(one.pressure, one.rate, one.strain[-1])
 			places["curves"].plot(100 * strain, stress / 1e6, "k--", linewidth=0.6)
 		places["curves"].plot([], [], "k--", linewidth=0.6, label="material point")
@@ -28,10 +30,21 @@ def strength(rough, smooth):
 		places["curves"].set_ylabel("axial stress [MPa]")
 		places["curves"].set_ylim(0, 1.8 * max(one.stress.max() for one in rough) / 1e6)
 		places["curves"].legend(title="pressure", ncols=2, loc="upper right")
-		for histories, marker, name in ((rough, "o", "rough ends, spread of $G_f$"), (smooth, "s", "smooth ends, no spread")):
-			places["strength"].plot([one.pressure / 1e6 for one in histories], [one.peak[0] / 1e6 for one in histories], marker, markersize=4, label=name)
+		for histories, marker, name in (
+			(rough, "o", "rough ends, spread of $G_f$"),
+			(smooth, "s", "smooth ends, no spread"),
+		):
+			places["strength"].plot(
+				[one.pressure / 1e6 for one in histories],
+				[one.peak[0] / 1e6 for one in histories],
+				marker,
+				markersize=4,
+				label=name,
+			)
 		pressures = np.linspace(0, max(one.pressure for one in rough), 25)
-		peaks = [confined.material_point(pressure, rough[0].rate, 0.006)[1].max() / 1e6 for pressure in pressures]
+		peaks = [
+			confined.material_point(pressure, rough[0].rate, 0.006)[1].max() / 1e6 for pressure in pressures
+		]
 		places["strength"].plot(pressures / 1e6, peaks, "k--", linewidth=0.8, label="material point")
 		places["strength"].set_xlabel("lateral pressure [MPa]")
 		places["strength"].set_ylabel("strength [MPa]")
@@ -42,12 +55,18 @@ def strength(rough, smooth):
 		_maps([places[k] for k in range(len(shown))], {f"{one.pressure / 1e6:g} MPa": one for one in shown})
 		for k in range(len(shown), columns):
 			places[k].set_axis_off()
-		fig.colorbar(places[0].collections[0], ax=[places[k] for k in range(columns)], label="damage $\\eta/\\eta_{max}$ [-]", aspect=25)
+		fig.colorbar(
+			places[0].collections[0],
+			ax=[places[k] for k in range(columns)],
+			label="damage $\\eta/\\eta_{max}$ [-]",
+			aspect=25,
+		)
 	return fig
 
 
 def orientation(blocks):
-	"""Stress over strain of blocks on several meshes, by (number of triangles, pattern), and the damage at the end of those with the last number."""
+	"""Stress over strain of blocks on several meshes, by (number of triangles, pattern), and the damage at the end
+	of those with the last number."""
 	counts, patterns = (list(dict.fromkeys(names)) for names in zip(*blocks))
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE, 82)
@@ -56,7 +75,10 @@ def orientation(blocks):
 		look = lambda count: "-" if count == counts[-1] else "--"
 		for (count, pattern), one in blocks.items():
 			label = pattern if count == counts[-1] else None
-			curves.plot(100 * one.strain, one.stress / 1e6, look(count), color=plots.COLOURS[patterns.index(pattern)], label=label)
+			curves.plot(
+				100 * one.strain, one.stress / 1e6, look(count),
+				color=plots.COLOURS[patterns.index(pattern)], label=label
+			)
 		for count in counts:
 			curves.plot([], [], look(count), color="k", label=f"about {count} triangles")
 		curves.set_xlabel("strain of the block [%]")
@@ -65,7 +87,10 @@ def orientation(blocks):
 		curves.legend(loc="upper right")
 		curves.spines[["top", "right"]].set_visible(False)
 		_maps(maps, {pattern: blocks[counts[-1], pattern] for pattern in patterns})
-		fig.colorbar(maps[0].collections[0], ax=maps, label="damage $\\eta/\\eta_{max}$ [-]", location="bottom", shrink=0.6, aspect=30)
+		fig.colorbar(
+			maps[0].collections[0], ax=maps, label="damage $\\eta/\\eta_{max}$ [-]", location="bottom",
+			shrink=0.6, aspect=30
+		)
 	return fig
 
 

@@ -1,8 +1,9 @@
 # GPL v2 or later, see LICENSE.
 """Elastic block under a horizontal impulse on its side: Zubelewicz (2018), section 4.2.
 
-The report prints the block, 10 cm x 40 cm of 1600 triangles, and its constants (Table 1, no equation of state); of the impulse it says that it is horizontal and
-acts on a side. Here it is a pressure on the left side that grows and falls smoothly; the other sides are free.
+The report prints the block, 10 cm x 40 cm of 1600 triangles, and its constants (Table 1, no equation of state); of the
+impulse it says that it is horizontal and acts on a side. Here it is a pressure on the left side that grows and falls
+smoothly; the other sides are free.
 """
 from dataclasses import dataclass
 
@@ -22,7 +23,8 @@ SHAPES = {
 	"sine-squared": lambda t: np.sin(np.pi * t)**2,
 	"half-sine": lambda t: np.sin(np.pi * t),
 	"triangle": lambda t: 1 - np.abs(2 * t - 1),
-	"trapezoid": lambda t: np.clip(10 * np.minimum(t, 1 - t), 0, 1),  # without jumps, whose momentum would depend on where the steps fall
+	# without jumps, whose momentum would depend on where the steps fall
+	"trapezoid": lambda t: np.clip(10 * np.minimum(t, 1 - t), 0, 1),
 }
 
 
@@ -38,11 +40,17 @@ class Impulse:
 		if self.shape not in SHAPES:
 			raise ValueError(f"impulse: shape {self.shape!r} is unknown; there are {', '.join(SHAPES)}")
 		if not 0 < abs(self.pressure) < np.inf:
-			raise ValueError(f"impulse: pressure = {self.pressure} Pa must be a number other than zero; a negative one pulls")
+			raise ValueError(
+				f"impulse: pressure = {self.pressure} Pa must be a number other than zero; a negative "
+				"one pulls"
+			)
 		if not 0 < self.duration < np.inf:
 			raise ValueError(f"impulse: duration = {self.duration} s must be positive")
 		if not 0 < self.patch <= HEIGHT:
-			raise ValueError(f"impulse: patch = {self.patch} m must be positive and no larger than the side, {HEIGHT} m")
+			raise ValueError(
+				f"impulse: patch = {self.patch} m must be positive and no larger than the side, "
+				f"{HEIGHT} m"
+			)
 
 	@property
 	def table(self):
@@ -61,13 +69,15 @@ class Impulse:
 		return float(np.trapezoid(self.table[1], self.table[0])) * self.patch
 
 	def rigid(self, times):
-		"""Displacement [m] at times [s], from zero on in small steps, of a rigid block of that mass: what is left of a displacement is deformation."""
+		"""Displacement [m] at times [s], from zero on in small steps, of a rigid block of that mass: what is
+		left of a displacement is deformation."""
 		pushed = self.at(times) * self.patch / (CONCRETE["density"] * WIDTH * HEIGHT)
 		velocity = cumulative_trapezoid(pushed, times, initial=0)
 		return cumulative_trapezoid(velocity, times, initial=0)
 
 	def shares(self, mesh):
-		"""Nodes that are loaded, and their force per pressure and thickness [m], that of linear displacement along the edges."""
+		"""Nodes that are loaded, and their force per pressure and thickness [m],
+		that of linear displacement along the edges."""
 		side = mesh.boundary("left")
 		side = side[np.argsort(mesh.nodes[side, 1])]
 		y = mesh.nodes[side, 1]
@@ -101,7 +111,8 @@ def central_node(mesh):
 
 
 def regions(mesh, values, part=0.1):
-	"""Number of separate regions of the mesh in which nodal values have one sign and more than a part of the largest size: how rich a pattern is."""
+	"""Number of separate regions of the mesh in which nodal values have one sign and more than a part of the
+	largest size: how rich a pattern is."""
 	sign = np.sign(values) * (np.abs(values) > part * np.abs(values).max())
 	first, second = np.concatenate([mesh.triangles[:, [k, (k + 1) % 3]] for k in range(3)]).T
 	joined = (sign[first] == sign[second]) & (sign[first] != 0)
@@ -110,7 +121,10 @@ def regions(mesh, values, part=0.1):
 	return len(np.unique(labels[sign != 0]))
 
 
-def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instants=INSTANTS, step=0.8, recorders=(), files=50):
+def run(
+	size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instants=INSTANTS, step=0.8, recorders=(),
+	files=50
+):
 	"""Build the block, push it and return its :class:`History`.
 
 	:param size: of the crossed cells [m]; 0.01 gives the report's 1600 triangles
@@ -118,7 +132,8 @@ def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instant
 	:param until: end [s]
 	:param instants: times of the fields [s], moved to the nearest even step
 	:param step: time step over the critical one
-	:param recorders: functions of the block that make a recorder, such as ``lambda block: vtk.Recorder(block, "out/block")``; it is called at *files* moments
+	:param recorders: functions of the block that make a recorder, such as ``lambda block: vtk.Recorder(block,
+		"out/block")``; it is called at *files* moments
 	"""
 	O.materials.append(DeformableElastMat(label="elastic", **CONCRETE))
 	block = ddem.append(ddem.mesh.rectangle(WIDTH, HEIGHT, size), "elastic")
@@ -126,7 +141,8 @@ def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instant
 	moments, pressures = impulse.table
 	pushes = [
 		InterpolatingDirectedForceEngine(
-			ids=[int(i) for i in block.node_ids[nodes[np.isclose(shares, share)]]], direction=(1, 0, 0), times=moments.tolist(),
+			ids=[int(i) for i in block.node_ids[nodes[np.isclose(shares, share)]]], direction=(1, 0, 0),
+			times=moments.tolist(),
 			magnitudes=(pressures * share * block.thickness).tolist()
 		) for share in np.unique(shares.round(12))
 	]
@@ -150,6 +166,12 @@ def run(size=0.01, impulse=Impulse(), rotation="cosserat", until=200e-6, instant
 		O.step()
 		book.record()
 	mass = engine.array("nodeMass").sum() + engine.array("coreMass").sum()
-	momentum = sum((engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")).sum(axis=0) for kind in ("node", "core"))
+	momentum = sum(
+		(engine.array(kind + "Mass")[:, None] * engine.array(kind + "Velocity")).sum(axis=0)
+		for kind in ("node", "core")
+	)
 	instants, fields = zip(*fields)
-	return History(block.mesh, impulse, O.dt, np.array(times), np.array(centre), np.array(instants), list(fields), momentum[0] / mass, book.largest)
+	return History(
+		block.mesh, impulse, O.dt, np.array(times), np.array(centre), np.array(instants), list(fields),
+		momentum[0] / mass, book.largest
+	)

@@ -31,7 +31,11 @@ def displacement(history, reference=None):
 		rest = 1e6 * (history.centre[:, 0] - history.impulse.rigid(history.times))
 		part.plot(time, rest, color=plots.COLOURS[1], label="deformable triangles")
 		if reference is not None:
-			part.plot(1e6 * reference.times, 1e6 * (reference.centre[:, 0] - history.impulse.rigid(reference.times)), "k--", linewidth=0.8, label="finite elements")
+			part.plot(
+				1e6 * reference.times,
+				1e6 * (reference.centre[:, 0] - history.impulse.rigid(reference.times)),
+				"k--", linewidth=0.8, label="finite elements"
+			)
 		_mark(part, history, rest, (4, -13))
 		part.set_xlabel("time [µs]")
 		part.set_ylabel(r"$u_x - u_\mathrm{rigid}$ [µm]")
@@ -43,7 +47,8 @@ def displacement(history, reference=None):
 
 
 def contours(history, reference=None, levels=10):
-	"""u_x, its mean left out, and u_y at the instants, in columns, with contour lines (not at zero); those of a reference dashed over them."""
+	"""u_x, its mean left out, and u_y at the instants, in columns, with contour lines (not at zero);
+	those of a reference dashed over them."""
 	count = len(history.instants)
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE, min(105, 40 + 210 / count))
@@ -55,20 +60,36 @@ def contours(history, reference=None, levels=10):
 			largest = max(np.abs(field).max() for field in fields)
 			row = axes[axis * count:(axis + 1) * count]
 			for number, (ax, field) in enumerate(zip(row, fields)):
-				plots.field(history.mesh, field, name, ax=ax, limits=(-largest, largest), signed=True, colorbar=False)
+				plots.field(
+					history.mesh, field, name, ax=ax, limits=(-largest, largest), signed=True,
+					colorbar=False
+				)
 				lines = {"levels": np.linspace(-largest, largest, levels + 2)[1:-1], "linewidths": 0.5}
 				shape = Triangulation(*(1e3 * history.mesh.nodes.T), history.mesh.triangles)
 				ax.tricontour(shape, field, colors=plots.COLOURS[1], linestyles="solid", **lines)
 				if reference is not None:
-					ax.tricontour(shape, part(reference.fields[number]), colors="k", linestyles="dashed", **lines)
+					ax.tricontour(
+						shape, part(reference.fields[number]), colors="k", linestyles="dashed",
+						**lines
+					)
 				ax.set_title(f"{number + 1}: {1e6 * history.instants[number]:.0f} µs")
 				ax.set_xticks((0, 50, 100))
 				if ax is not axes[0]:
 					ax.set_ylabel("")
-			fig.colorbar(row[0].collections[0], ax=list(row), label=name, location="top", shrink=0.8, aspect=25)
+			fig.colorbar(
+				row[0].collections[0], ax=list(row), label=name, location="top", shrink=0.8, aspect=25
+			)
 		if reference is not None:
-			handles = [Line2D([], [], color=plots.COLOURS[1], linewidth=0.8), Line2D([], [], color="k", linewidth=0.8, linestyle="dashed")]
-			fig.legend(handles, ["deformable triangles", "finite elements"], loc="outside lower center", ncols=2)
+			handles = [
+				Line2D([], [], color=plots.COLOURS[1], linewidth=0.8),
+				Line2D([], [], color="k", linewidth=0.8, linestyle="dashed"),
+			]
+			fig.legend(
+				handles,
+				["deformable triangles", "finite elements"],
+				loc="outside lower center",
+				ncols=2,
+			)
 	return fig
 
 
@@ -76,4 +97,7 @@ def _mark(ax, history, values, offset):
 	for number, instant in enumerate(history.instants):
 		height = np.interp(instant, history.times, values)
 		ax.plot(1e6 * instant, height, "o", color="k", markersize=3, zorder=4)
-		ax.annotate(str(number + 1), (1e6 * instant, height), textcoords="offset points", xytext=offset, fontsize=8, bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4})
+		ax.annotate(
+			str(number + 1), (1e6 * instant, height), textcoords="offset points", xytext=offset, fontsize=8,
+			bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4}
+		)

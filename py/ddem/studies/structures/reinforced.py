@@ -1,22 +1,27 @@
 # GPL v2 or later, see LICENSE.
 """Concrete block with a steel bar, crushed at 10 m/s: Zubelewicz (2018), section 4.3.
 
-10 cm wide and 20 cm tall, 800 triangles with three integration points each, a bar of 304L steel of 8 triangles in the middle; the top moves down at full speed
-from the first step on, the bottom stands, both are held laterally. Fracture energies are drawn at random.
+10 cm wide and 20 cm tall, 800 triangles with three integration points each, a bar of 304L steel of 8 triangles in the
+middle; the top moves down at full speed from the first step on, the bottom stands, both are held laterally.
+Fracture energies are drawn at random.
 """
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from yade import ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, VonMisesMat, ddem
+from yade import (
+	ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, VonMisesMat,
+	ddem
+)
 
 from .. import uniaxial
 from ..runs import Run
 from .spall import IMPEDANCE
 
 WIDTH, HEIGHT, VELOCITY = 0.10, 0.20, 10.0  # [m], [m/s]
-BAR = ((0.05, 0.09), (0.06, 0.10), (0.05, 0.11), (0.04, 0.10))  #: 1.4 cm x 1.4 cm in the middle, on its corner, as 8 triangles of the mesh make it [m]
+#: 1.4 cm x 1.4 cm in the middle, on its corner, as 8 triangles of the mesh make it [m]
+BAR = ((0.05, 0.09), (0.06, 0.10), (0.05, 0.11), (0.04, 0.10))
 STEEL = {"bulk": 151e9, "shear": 81e9, "density": 8030}  #: 304L
 SIZE = 0.01  #: of the report's mesh [m]
 RINGING = 5e-6  #: two periods of a row of the report's triangles, 10 mm high, that is hit at full speed [s]
@@ -43,7 +48,8 @@ class Crushed:
 
 	@property
 	def wave(self):
-		"""Stress ρ c_p v [Pa] of the elastic wave that the platen sends off, as long as the sides do not matter."""
+		"""Stress ρ c_p v [Pa] of the elastic wave that the platen sends off,
+		as long as the sides do not matter."""
 		return IMPEDANCE * self.velocity
 
 	@property
@@ -58,8 +64,11 @@ class Crushed:
 
 	@property
 	def smooth(self):
-		"""The stress without the ringing of the first row of triangles: its mean over RINGING around each record [Pa]."""
-		return uniform_filter1d(self.stress, max(1, round(RINGING / np.diff(self.times).mean())), mode="nearest")
+		"""The stress without the ringing of the first row of triangles:
+		its mean over RINGING around each record [Pa]."""
+		return uniform_filter1d(
+			self.stress, max(1, round(RINGING / np.diff(self.times).mean())), mode="nearest"
+		)
 
 	def snapshot(self, time):
 		"""The snapshot nearest to a time [s], and the displacement of its nodes (n, 2) [m]."""
@@ -67,7 +76,8 @@ class Crushed:
 		return snapshot, snapshot.nodes - self.mesh.nodes
 
 	def damage(self, time):
-		"""Damage of the triangles (m,) [-], mean of their sub-elements, at the snapshot nearest to a time [s]."""
+		"""Damage of the triangles (m,) [-], mean of their sub-elements,
+		at the snapshot nearest to a time [s]."""
 		return self.run.snapshot_near(time).damage.mean(axis=1)
 
 	def mean_damage(self, time, zone=True):
@@ -76,17 +86,22 @@ class Crushed:
 		return float(np.average(self.damage(time)[chosen], weights=self.mesh.areas[chosen]))
 
 	def wedge(self, top):
-		"""Mask of the triangles of the wedge below the top (or above the bottom) between the diagonals that begin one cell of the report's mesh from its corners."""
+		"""Mask of the triangles of the wedge below the top (or above the bottom) between the diagonals that
+		begin one cell of the report's mesh from its corners."""
 		x, y = self.mesh.centroids.T
 		return np.abs(x - WIDTH / 2) < WIDTH / 2 - SIZE - (HEIGHT - y if top else y)
 
 	def share(self, time, low, high):
 		"""Part [-] of the concrete's area whose damage lies from *low* to *high*."""
 		concrete, damage = self.mesh.regions == 0, self.damage(time)
-		return float(self.mesh.areas[concrete & (damage >= low) & (damage <= high)].sum() / self.mesh.areas[concrete].sum())
+		return float(
+			self.mesh.areas[concrete & (damage >= low) & (damage <= high)].sum()
+			/ self.mesh.areas[concrete].sum()
+		)
 
 	def first_damaged(self, level=0.1):
-		"""Centroid [m] of the triangle whose damage was the first to pass the level, as far as snapshots tell, and the time [s]."""
+		"""Centroid [m] of the triangle whose damage was the first to pass the level, as far as snapshots tell,
+		and the time [s]."""
 		for snapshot in self.run.snapshots:
 			damage = snapshot.damage.mean(axis=1)
 			if damage.max() > level:
@@ -99,7 +114,11 @@ class Crushed:
 
 	def rotation(self, time, upper=True):
 		"""Largest rotation [rad] of a triangle in the upper or lower half, and its centroid [m]."""
-		rotation = np.where((self.mesh.centroids[:, 1] > HEIGHT / 2) == upper, np.abs(self.run.snapshot_near(time).rotation), 0)
+		rotation = np.where(
+			(self.mesh.centroids[:, 1] > HEIGHT / 2) == upper,
+			np.abs(self.run.snapshot_near(time).rotation),
+			0,
+		)
 		return float(rotation.max()), self.mesh.centroids[rotation.argmax()]
 
 	def spread(self, time, upper=True):
@@ -137,8 +156,8 @@ class _Test(uniaxial.CompressionTest):
 
 
 def run(
-	size=SIZE, seed=1, bar=True, pattern="crossed", velocity=VELOCITY, until=6e-4, crack_band=None, rotation="cosserat", step=0.8, concrete=None, recorders=(),
-	progress=False, dt=None, steel="elastic"
+	size=SIZE, seed=1, bar=True, pattern="crossed", velocity=VELOCITY, until=6e-4, crack_band=None,
+	rotation="cosserat", step=0.8, concrete=None, recorders=(), progress=False, dt=None, steel="elastic"
 ):
 	"""Crush the block and return what happened, as :class:`Crushed`.
 
@@ -154,17 +173,24 @@ def run(
 	:param step: time step over the critical one, which falls as triangles stretch
 	:param dt: time step [s] instead, to compare two runs record by record
 	:param concrete: attributes of :yref:`ConcreteDamageMat` that differ from Tables 1 and 2
-	:param recorders: functions of the block that make a recorder, such as ``lambda block: vtk.Recorder(block, "out/block")``
+	:param recorders: functions of the block that make a recorder, such as ``lambda block:
+		vtk.Recorder(block, "out/block")``
 	"""
 	O.materials.append(ConcreteDamageMat(label="concrete", **(concrete or {})))  # Tables 1 and 2
 	kind = {"elastic": DeformableElastMat, "yielding": VonMisesMat}[steel]
 	O.materials.append(kind(label="steel", **STEEL))
-	mesh = ddem.mesh.rectangle(WIDTH, HEIGHT, size, pattern=pattern, regions={"bar": BAR}, **({"seed": 1} if pattern == "unstructured" else {}))
-	block = ddem.append(mesh, {"": "concrete", "bar": "steel" if bar else "concrete"}, seed=seed, crack_band=crack_band)
+	mesh = ddem.mesh.rectangle(
+		WIDTH, HEIGHT, size, pattern=pattern, regions={"bar": BAR},
+		**({"seed": 1} if pattern == "unstructured" else {})
+	)
+	block = ddem.append(
+		mesh, {"": "concrete", "bar": "steel" if bar else "concrete"}, seed=seed, crack_band=crack_band
+	)
 	platens = ddem.platens(block, velocity)
 	# crushed to zero bearing capacity and on: single triangles turn inside out then
 	engine = DeformableEngine(rotation=rotation, inverted="warn", label="deformable")
-	followers = [] if dt else [DeformableTimeStepper(safety=step)]  # triangles stretch to several times their size while they turn
+	# triangles stretch to several times their size while they turn
+	followers = [] if dt else [DeformableTimeStepper(safety=step)]
 	O.engines = [ForceResetter(), *platens.engines, *followers, engine]
 	critical = engine.criticalTimeStep()
 	O.dt = dt or step * critical
@@ -193,4 +219,6 @@ class Fields:
 
 	def compression(self, zone, until):
 		"""Largest vertical compression [Pa] until a time [s], mean of the triangles in a zone."""
-		return float(max(-stress[zone, 1].mean() for time, stress in zip(self.times, self.stresses) if time <= until))
+		return float(
+			max(-stress[zone, 1].mean() for time, stress in zip(self.times, self.stresses) if time <= until)
+		)

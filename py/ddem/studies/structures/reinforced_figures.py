@@ -9,10 +9,14 @@ from .reinforced import HEIGHT, WIDTH
 
 
 def history(crushed, instants, shown=3e-4):
-	"""Figure 7: average stress on the top over time, and damage on the deformed block at the instants [s]; *shown* [s] of the time."""
+	"""Figure 7: average stress on the top over time, and damage on the deformed block at the instants [s];
+	*shown* [s] of the time."""
 	with rc_context(plots.STYLE):
 		fig, upper, lower = _rows(len(instants), 125, (0.62, 1))
-		upper.plot(1e6 * crushed.times, crushed.stress / 1e6, color="0.8", linewidth=0.6, label="average stress on the top")
+		upper.plot(
+			1e6 * crushed.times, crushed.stress / 1e6, color="0.8", linewidth=0.6,
+			label="average stress on the top"
+		)
 		_curve(upper, crushed, "its mean over 5 µs", plots.COLOURS[1])
 		upper.legend(loc="upper right")
 		for number, instant in enumerate(instants, start=1):
@@ -27,17 +31,26 @@ def history(crushed, instants, shown=3e-4):
 
 
 def shape(crushed, instant):
-	"""Lateral displacement and rotation on the deformed block at an instant [s], and the largest rotation and lateral displacement over time."""
+	"""Lateral displacement and rotation on the deformed block at an instant [s], and the largest rotation and
+	lateral displacement over time."""
 	snapshot, moved = crushed.snapshot(instant)
 	with rc_context(plots.STYLE):
 		fig, upper, lower = _rows(2, 92, (1, 1), side=True)
 		lateral = 1e3 * moved[:, 0]
-		for ax, values, name in ((lower[0], lateral, "lateral displacement [mm]"), (lower[1], snapshot.rotation, "rotation [rad]")):
+		for ax, values, name in (
+			(lower[0], lateral, "lateral displacement [mm]"),
+			(lower[1], snapshot.rotation, "rotation [rad]"),
+		):
 			drawn = block(ax, crushed, instant, values, None)
 			fig.colorbar(drawn, ax=ax, label=name, shrink=0.8, aspect=25, location="bottom")
 		_share(lower)
 		times = 1e3 * np.array([s.time for s in crushed.run.snapshots])
-		upper.plot(times, [np.abs(s.rotation).max() for s in crushed.run.snapshots], color=plots.COLOURS[0], label="largest rotation")
+		upper.plot(
+			times,
+			[np.abs(s.rotation).max() for s in crushed.run.snapshots],
+			color=plots.COLOURS[0],
+			label="largest rotation",
+		)
 		lateral = [1e2 * np.abs((s.nodes - crushed.mesh.nodes)[:, 0]).max() for s in crushed.run.snapshots]
 		upper.plot(times, lateral, color=plots.COLOURS[1], label="largest lateral displacement")
 		upper.axhline(np.pi / 3, color="0.4", linewidth=0.7, linestyle="--")
@@ -51,7 +64,8 @@ def shape(crushed, instant):
 
 
 def realisations(crushed, instant):
-	"""Figure 8: stress over time of several realisations (by seed), and damage of each at an instant [s], the point P."""
+	"""Figure 8: stress over time of several realisations (by seed), and damage of each at an instant [s],
+	the point P."""
 	with rc_context(plots.STYLE):
 		fig, upper, lower = _rows(len(crushed), 125, (0.62, 1))
 		for number, (seed, one) in enumerate(crushed.items()):
@@ -68,7 +82,8 @@ def realisations(crushed, instant):
 
 
 def refinement(crushed, shown=3e-4):
-	"""Stress over time on several meshes with and without the crack band, by (corrected?, size), and the energy that flow and damage take over the size."""
+	"""Stress over time on several meshes with and without the crack band, by (corrected?, size), and the energy
+	that flow and damage take over the size."""
 	sizes = sorted({size for _, size in crushed}, reverse=True)
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE, 62)
@@ -83,8 +98,18 @@ def refinement(crushed, shown=3e-4):
 		panels[1].set_ylabel("")
 		panels[0].legend(title="size")
 		for corrected, marker in ((False, "o-"), (True, "s-")):
-			energies = [np.interp(shown, crushed[corrected, size].times, crushed[corrected, size].dissipated) / 1e3 for size in sizes]
-			panels[2].semilogx([1e3 * size for size in sizes], energies, marker, markersize=4, label="crack band" if corrected else "per volume")
+			energies = [
+				np.interp(shown, crushed[corrected, size].times, crushed[corrected, size].dissipated)
+				/ 1e3
+				for size in sizes
+			]
+			panels[2].semilogx(
+				[1e3 * size for size in sizes],
+				energies,
+				marker,
+				markersize=4,
+				label="crack band" if corrected else "per volume",
+			)
 		panels[2].set_xticks([1e3 * size for size in sizes], [f"{1e3 * size:g}" for size in sizes])
 		panels[2].minorticks_off()
 		panels[2].set_ylim(0, 1.05 * panels[2].get_ylim()[1])
@@ -97,8 +122,8 @@ def refinement(crushed, shown=3e-4):
 
 
 def shielding(crushed, zones, instant=24e-6, later=70e-6):
-	"""What the bar changes: damage over time in zones around it, vertical stress at an instant [s] and damage at a later one with the bar, and the difference to
-	the block without it.
+	"""What the bar changes: damage over time in zones around it, vertical stress at an instant [s] and damage at
+	a later one with the bar, and the difference to the block without it.
 
 	:param crushed: see :func:`reinforced_statements.with_and_without_bar`
 	:param zones: masks of the triangles by name
@@ -111,8 +136,13 @@ def shielding(crushed, zones, instant=24e-6, later=70e-6):
 		for number, (name, zone) in enumerate(zones.items()):
 			for one, line in ((with_bar, "-"), (without, "--")):
 				times = [snapshot.time for snapshot in one.run.snapshots]
-				curve.plot([1e6 * time for time in times], [one.mean_damage(time, zone) for time in times], line, color=plots.COLOURS[number],
-					label=name if one is with_bar else None)
+				curve.plot(
+					[1e6 * time for time in times],
+					[one.mean_damage(time, zone) for time in times],
+					line,
+					color=plots.COLOURS[number],
+					label=name if one is with_bar else None,
+				)
 		curve.plot([], [], "k--", label="without bar")
 		curve.set_xlabel("time [µs]")
 		curve.set_ylabel("mean damage [-]")
@@ -122,24 +152,32 @@ def shielding(crushed, zones, instant=24e-6, later=70e-6):
 		stresses = [-one.recorders[0].at(instant)[:, 1] / 1e6 for one in (with_bar, without)]
 		damages = [one.damage(later) for one in (with_bar, without)]
 		pictures = (
-			(instant, stresses[0], (0, 200), "compression\n[MPa]"), (instant, stresses[0] - stresses[1], None, "with − without\n[MPa]"),
-			(later, damages[0], (0, 1), "damage\n[-]"), (later, damages[0] - damages[1], None, "with − without\n[-]")
+			(instant, stresses[0], (0, 200), "compression\n[MPa]"),
+			(instant, stresses[0] - stresses[1], None, "with − without\n[MPa]"),
+			(later, damages[0], (0, 1), "damage\n[-]"),
+			(later, damages[0] - damages[1], None, "with − without\n[-]")
 		)
 		for ax, (time, values, limits, name) in zip(maps, pictures):
 			ax.set_title(f"{1e6 * time:.0f} µs")
-			fig.colorbar(block(ax, with_bar, time, values, limits), ax=ax, label=name, location="bottom", shrink=0.9, aspect=10)
+			fig.colorbar(
+				block(ax, with_bar, time, values, limits), ax=ax, label=name, location="bottom",
+				shrink=0.9, aspect=10
+			)
 			ax.set_xlabel("")
 		_share(maps)
 	return fig
 
 
 def block(ax, crushed, instant, values, limits):
-	"""Draw "damage", or values of nodes, triangles or sub-elements, on the deformed block with its bar; returns what a colour bar needs. Without limits, colours are
-	symmetric about zero."""
+	"""Draw "damage", or values of nodes, triangles or sub-elements, on the deformed block with its bar; returns
+	what a colour bar needs. Without limits, colours are symmetric about zero."""
 	snapshot, _ = crushed.snapshot(instant)
 	values = snapshot.damage if isinstance(values, str) else values
 	signed = limits is None
-	plots.field((snapshot.nodes, crushed.mesh.triangles), values, "", ax=ax, limits=limits, signed=signed, colorbar=False)
+	plots.field(
+		(snapshot.nodes, crushed.mesh.triangles), values, "", ax=ax, limits=limits, signed=signed,
+		colorbar=False
+	)
 	if len(snapshot.border):
 		ax.add_collection(LineCollection(1e3 * snapshot.nodes[snapshot.border], colors="red", linewidths=0.8))
 	out = max(12, 1e3 * np.abs(snapshot.nodes[:, 0] - WIDTH / 2).max() - 500 * WIDTH + 3)

@@ -4,7 +4,8 @@ from yade import O
 
 
 def advance(steps, looks, row, writers=()):
-	"""Make *steps* time steps; after each of about *looks* equal parts of them call ``row()``, and return the list of what it gave.
+	"""Make *steps* time steps; after each of about *looks* equal parts of them call ``row()``,
+	and return the list of what it gave.
 
 	:param writers: called 50 times on the way, such as recorders of ParaView files
 	"""

@@ -20,26 +20,38 @@ PATHS = {  # name: (targets in strain of the legs, stresses held, tolerance)
 def concrete_paths(check):
 	"""Plane strain, biaxial stress, turning axes
 
-	The whole law where two or three stresses act: plane strain in compression and in tension, equal biaxial compression; then tension and compression without
-	lateral strain, followed by shear, which turns the principal stresses away from the axes of the damage that there is.
+	The whole law where two or three stresses act: plane strain in compression and in tension, equal biaxial
+	compression; then tension and compression without lateral strain, followed by shear, which turns the principal
+	stresses away from the axes of the damage that there is.
 
-	Reference: the equations of the report a second time, as rate equations that share no code with the plugin and are integrated by SciPy.
+	Reference: the equations of the report a second time, as rate equations that share no code with the plugin and
+	are integrated by SciPy.
 
-	Expect: extrapolated from two step sizes, all components of the stress within 2·10⁻⁵ of the largest, 5·10⁻⁵ in tension.
+	Expect: extrapolated from two step sizes, all components of the stress within 2·10⁻⁵ of the largest,
+	5·10⁻⁵ in tension.
 	"""
 	parameters, drawn = concrete(), {}
 	for name, (legs, held, tolerance) in PATHS.items():
-		rates, duration = concrete_rates.RatePoint(parameters), max(abs(value) for value in legs[0].values())  # at 1/s
+		# at 1/s
+		rates, duration = concrete_rates.RatePoint(parameters), max(abs(value) for value in legs[0].values())
 		parts = [rates.go(duration, leg, held, shares=concrete_rates.fractions(SAMPLES)) for leg in legs]
 		strain, expected = (np.concatenate([part[k] for part in parts]) for k in (0, 1))
 
 		def run(steps):
 			point = MaterialPoint(parameters)
-			return np.concatenate([point.path(duration, leg, held, steps=steps, every=steps // SAMPLES).stress for leg in legs])
+			return np.concatenate(
+				[
+					point.path(duration, leg, held, steps=steps, every=steps // SAMPLES).stress
+					for leg in legs
+				]
+			)
 
 		found = concrete_rates.extrapolated(run, STEPS)
 		difference = concrete_rates.largest_difference(found, expected)
-		check(f"{name}: largest difference of a stress, over the largest [-]", difference, 0, tolerance, concrete_rates.SOURCE, scale=1)
+		check(
+			f"{name}: largest difference of a stress, over the largest [-]",
+			difference, 0, tolerance, concrete_rates.SOURCE, scale=1
+		)
 		drawn[name] = strain, found, expected
 
 	def draw():
@@ -53,7 +65,11 @@ def concrete_paths(check):
 				continue
 			ax, sheared = panels[titles.index(name)], slice(SAMPLES, None)
 			for component, label in enumerate(("xx", "yy", "zz", "xy")):
-				ax.plot(100 * strain[sheared, 3], found[sheared, component] / 1e6, label=rf"$\sigma_{{{label}}}$")
+				ax.plot(
+					100 * strain[sheared, 3],
+					found[sheared, component] / 1e6,
+					label=rf"$\sigma_{{{label}}}$",
+				)
 				ax.plot(100 * strain[sheared, 3], expected[sheared, component] / 1e6, **dotted)
 			ax.set_xlabel(r"shear strain $\varepsilon_{xy}$ [%]")
 			tools.legend(ax, 2, title=name)

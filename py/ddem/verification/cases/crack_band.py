@@ -37,7 +37,9 @@ def pulled(pattern, size, crack_band):
 	O.reset()
 	tools.elastic()
 	O.materials.append(ConcreteDamageMat(label="concrete", fractureEnergy=ENERGY))
-	mesh = ddem.mesh.rectangle(WIDTH, LENGTH, size, pattern=pattern, **({"seed": 1} if pattern == "unstructured" else {}))
+	mesh = ddem.mesh.rectangle(
+		WIDTH, LENGTH, size, pattern=pattern, **({"seed": 1} if pattern == "unstructured" else {})
+	)
 	y = mesh.nodes[mesh.triangles][:, :, 1]
 	row = (y.min(axis=1) < LINE) & (y.max(axis=1) > LINE)
 	mesh = dataclasses.replace(mesh, regions=row.astype(int), region_names=("", "row"))
@@ -46,7 +48,10 @@ def pulled(pattern, size, crack_band):
 	block.hold(np.concatenate([block.boundary("left"), block.boundary("right")]), "x")
 	tools.start(*platens.engines, rotation="none")
 	broken, every = block.mesh.region("row"), max(1, round(RECORDS / O.dt))
-	book, (over, under) = ddem.EnergyBalance(), (np.isclose(block.mesh.nodes[:, 1], edge) for edge in (y[row].max(), y[row].min()))
+	book, (over, under) = (
+		ddem.EnergyBalance(),
+		(np.isclose(block.mesh.nodes[:, 1], edge) for edge in (y[row].max(), y[row].min())),
+	)
 	top, bottom = (block.mesh.boundary(side) for side in ("top", "bottom"))
 	rows = [(0.0, ) * 5]
 	while rows[-1][1] < OPENING and O.time < 1e-3:
@@ -60,8 +65,11 @@ def pulled(pattern, size, crack_band):
 
 
 def point(band_factor, strains, duration):
-	"""Strain [-] and stress [Pa] of the material in uniaxial strain through these strains, each reached in *duration* [s]."""
-	result = MaterialPoint(concrete(fractureEnergy=ENERGY), band_factor=band_factor).path(duration, strain={"yy": list(strains)}, steps=20)
+	"""Strain [-] and stress [Pa] of the material in uniaxial strain through these strains,
+	each reached in *duration* [s]."""
+	result = MaterialPoint(concrete(fractureEnergy=ENERGY), band_factor=band_factor).path(
+		duration, strain={"yy": list(strains)}, steps=20
+	)
 	return result.strain[:, 1], result.stress[:, 1]
 
 
@@ -69,19 +77,25 @@ def point(band_factor, strains, duration):
 def crack_band(check):
 	"""Energy of a crack on meshes of four sizes
 
-	A bar breaks in one row of concrete; what is above and below stays elastic, and the sides slide on rollers. The fracture energy is per volume, so a crack takes
-	energy in proportion to the height of its row. With crack_band = 10 mm, G_f is multiplied by 10 mm/√(2S) once flow has localised: Bažant and Oh (1983). Rows are
-	20 to 2.5 mm high on alternating diagonals, and ragged, of 11 to 3.6 mm, on unstructured meshes.
+	A bar breaks in one row of concrete; what is above and below stays elastic, and the sides slide on rollers.
+	The fracture energy is per volume, so a crack takes energy in proportion to the height of its row.
+	With crack_band = 10 mm, G_f is multiplied by 10 mm/√(2S) once flow has localised: Bažant and Oh (1983).
+	Rows are 20 to 2.5 mm high on alternating diagonals, and ragged, of 11 to 3.6 mm, on unstructured meshes.
 
-	Reference: until its peak the straight row is a material point in uniaxial strain, which follows the same opening over time; energies have the ratio of those
-	of such points; on ragged rows, with the correction, strength and energy are the same on all meshes.
+	Reference: until its peak the straight row is a material point in uniaxial strain, which follows the same
+	opening over time; energies have the ratio of those of such points; on ragged rows, with the correction,
+	strength and energy are the same on all meshes.
 
-	Expect: peaks within 1 % of the material point. Ragged rows: strengths within 3 %, energies until 0.1 mm within 6 % of each other, where without the correction
-	they differ by two times. Straight rows: energies within 20 %, since what is taken before flow localises stays per volume, instead of three times; strengths
-	within 3 %, but for rows of 2.5 mm, which harden once more while the sides are held (12 instead of 10 MPa).
+	Expect: peaks within 1 % of the material point. Ragged rows: strengths within 3 %, energies until 0.1 mm within
+	6 % of each other, where without the correction they differ by two times. Straight rows: energies within 20 %,
+	since what is taken before flow localises stays per volume, instead of three times; strengths within 3 %, but
+	for rows of 2.5 mm, which harden once more while the sides are held (12 instead of 10 MPa).
 	"""
-	bars = {(name, pattern): [pulled(pattern, size, band) for size in sizes] for name, band in (("with", REFERENCE), ("without", None))
-		for pattern, sizes in SIZES.items()}
+	bars = {
+		(name, pattern): [pulled(pattern, size, band) for size in sizes]
+		for name, band in (("with", REFERENCE), ("without", None))
+		for pattern, sizes in SIZES.items()
+	}
 	until = np.linspace(0, OPENING, 400)
 	expected = {}
 	for name in ("with", "without"):
@@ -89,7 +103,10 @@ def crack_band(check):
 			factor = REFERENCE / height if name == "with" else 1
 			last = bar.stress.argmax() + 1
 			_, stress = point(factor, bar.opening[1:last + 1] / height, bar.times[1])
-			check(f"peak {name} the correction, {1e3 * height:g} mm [Pa]", bar.stress.max(), stress.max(), 0.01, "material point of the same opening over time")
+			check(
+				f"peak {name} the correction, {1e3 * height:g} mm [Pa]", bar.stress.max(), stress.max(),
+				0.01, "material point of the same opening over time"
+			)
 			strain, stress = point(factor, until[1:] / height, OPENING / (2 * SPEED) / (len(until) - 1))
 			expected[name, height] = np.trapezoid(stress, strain) * height
 	energies = {key: np.array([bar.energy for bar in row]) for key, row in bars.items()}
@@ -97,27 +114,41 @@ def crack_band(check):
 	spread = lambda values: np.ptp(values) / values.min()
 	for name, values, tolerance in (("strength", strengths, 0.05), ("energy", energies, 0.12)):
 		check(
-			f"{name} with the correction, unstructured: largest over smallest, less one [-]", spread(values["with", "unstructured"]), 0, tolerance,
+			f"{name} with the correction, unstructured: largest over smallest, less one [-]",
+			spread(values["with", "unstructured"]), 0, tolerance,
 			f"crack band: the same {name}{' per area' if name == 'energy' else ''}", scale=1
 		)
 	check(
-		"strength with the correction, alternating: largest over smallest, less one [-]", spread(strengths["with", "alternating"]), 0, 0.25,
+		"strength with the correction, alternating: largest over smallest, less one [-]",
+		spread(strengths["with", "alternating"]), 0, 0.25,
 		"crack band: the same strength", scale=1
 	)
 	means = [energies["with", pattern].mean() for pattern in SIZES]
-	check("energy with the correction: unstructured over alternating [-]", means[1] / means[0], 1, 0.1, "√(2S): Rots (1988)")
+	check(
+		"energy with the correction: unstructured over alternating [-]",
+		means[1] / means[0], 1, 0.1, "√(2S): Rots (1988)"
+	)
 	first, last = SIZES["alternating"][0], SIZES["alternating"][-1]
 	for name in ("with", "without"):
 		ratio = energies[name, "alternating"][0] / energies[name, "alternating"][-1]
 		points = expected[name, first] / expected[name, last]
-		check(f"energy on 20 mm over that on 2.5 mm, {name} [-]", ratio, points, 0.1, "material points of these heights")
+		check(
+			f"energy on 20 mm over that on 2.5 mm, {name} [-]", ratio, points, 0.1,
+			"material points of these heights"
+		)
 	texts = {key: ", ".join(f"{value:.0f}" for value in row) for key, row in energies.items()}
-	less = 100 - 100 * np.concatenate([energies[name, "alternating"] / [expected[name, height] for height in SIZES["alternating"]] for name in ("with", "without")])
+	less = 100 - 100 * np.concatenate(
+		[
+			energies[name, "alternating"] / [expected[name, height] for height in SIZES["alternating"]]
+			for name in ("with", "without")
+		]
+	)
 	check.note(
-		f"Energies until 0.1 mm on straight rows of 20, 10, 5 and 2.5 mm: without the correction {texts['without', 'alternating']} J/m², with it "
-		f"{texts['with', 'alternating']} J/m²; on unstructured meshes of 12, 8, 6 and 4 mm {texts['without', 'unstructured']} and "
-		f"{texts['with', 'unstructured']} J/m². "
-		f"The row localises once more, in sub-elements, so that it takes {min(less):.0f} to {max(less):.0f} % less than the material point."
+		"Energies until 0.1 mm on straight rows of 20, 10, 5 and 2.5 mm: without the correction "
+		f"{texts['without', 'alternating']} J/m², with it {texts['with', 'alternating']} J/m²; "
+		f"on unstructured meshes of 12, 8, 6 and 4 mm {texts['without', 'unstructured']} and "
+		f"{texts['with', 'unstructured']} J/m². The row localises once more, in sub-elements, so that it "
+		f"takes {min(less):.0f} to {max(less):.0f} % less than the material point."
 	)
 	def draw():
 		fig, panels = tools.axes(plots.PAGE, 62, panels=3)
@@ -132,8 +163,14 @@ def crack_band(check):
 		panels[0].legend(title="height of the row")
 		for number, ((name, pattern), row) in enumerate(bars.items()):
 			line, marker = "-" if name == "with" else "--", "o" if pattern == "alternating" else "^"
-			panels[2].loglog([1e3 * bar.width for bar in row], [bar.energy for bar in row], line + marker, markersize=3.5, color=plots.COLOURS[number],
-				label=f"{pattern}, {'crack band' if name == 'with' else 'per volume'}")
+			panels[2].loglog(
+				[1e3 * bar.width for bar in row],
+				[bar.energy for bar in row],
+				line + marker,
+				markersize=3.5,
+				color=plots.COLOURS[number],
+				label=f"{pattern}, {'crack band' if name == 'with' else 'per volume'}",
+			)
 		panels[2].set_xticks((2, 5, 10, 20), ("2", "5", "10", "20"))
 		panels[2].set_yticks((100, 200, 500, 1000), ("100", "200", "500", "1000"))
 		panels[2].minorticks_off()
@@ -144,5 +181,7 @@ def crack_band(check):
 		return fig
 
 	check.picture(
-		draw, "Stress over the elongation of a bar that breaks in one row, for rows of four heights, and the energy that the crack takes on two kinds of mesh."
+		draw,
+		"Stress over the elongation of a bar that breaks in one row, for rows of four heights, and the energy "
+		"that the crack takes on two kinds of mesh.",
 	)

@@ -13,14 +13,14 @@ EDGE = 0.01  # [m]
 def local_damping(check, cycles=3):
 	"""Local damping of one oscillator
 
-	The core of one equilateral triangle, its vertices held, is pushed aside or turned and let go, with Cundall's local damping d. The force against the
-	motion is (1 + d) times the elastic force on the way out and (1 − d) times on the way back, so amplitudes fall by a fixed ratio in every half cycle,
-	whatever its frequency:
+	The core of one equilateral triangle, its vertices held, is pushed aside or turned and let go, with Cundall's
+	local damping d. The force against the motion is (1 + d) times the elastic force on the way out and (1 − d)
+	times on the way back, so amplitudes fall by a fixed ratio in every half cycle, whatever its frequency:
 
 		A₂/A₁ = √((1 − d)/(1 + d)),   t = ½π (1/√(1 − d) + 1/√(1 + d))/ω
 
-	with ω² = 6 (λ + 3μ)/(ρ (1 − α) a²) for the core's shift (edge a, α the share of the mass in the vertices) and ω² = μβ_φ/(ρ a² (1/12 − α/3)) for its
-	rotation.
+	with ω² = 6 (λ + 3μ)/(ρ (1 − α) a²) for the core's shift (edge a, α the share of the mass in the vertices) and
+	ω² = μβ_φ/(ρ a² (1/12 − α/3)) for its rotation.
 
 	Reference: integration of m ẍ = −k x (1 ± d) over a half cycle, derived here; Cundall (1987) for the damping.
 
@@ -36,7 +36,14 @@ def local_damping(check, cycles=3):
 			block = ddem.append(ddem.mesh.Mesh(corners, np.array([[0, 1, 2]])), material)
 			block.hold(block.node_ids)
 			state = O.bodies[int(block.triangle_ids[0])].state
-			recorder = tools.Recorder(lambda: engine.array("corePosition")[0, 0] - 0.5 * EDGE if motion == "shift" else engine.array("coreRotation")[0], 1)
+			recorder = tools.Recorder(
+				lambda: (
+					engine.array("corePosition")[0, 0] - 0.5 * EDGE
+					if motion == "shift"
+					else engine.array("coreRotation")[0]
+				),
+				1,
+			)
 			engine = tools.start(recorder.engine, step=0.02, rotation="cosserat", damping=damping)
 			share = engine.vertexShare
 			if motion == "shift":
@@ -44,7 +51,11 @@ def local_damping(check, cycles=3):
 				omega = np.sqrt(6 * (lam + 3 * mu) / (material.density * (1 - share) * EDGE**2))
 			else:
 				state.ori = (Vector3(0, 0, 1), 1e-5)
-				omega = np.sqrt(mu * material.rotationStiffness / (material.density * EDGE**2 * (1 / 12 - share / 3)))
+				omega = np.sqrt(
+					mu
+					* material.rotationStiffness
+					/ (material.density * EDGE**2 * (1 / 12 - share / 3))
+				)
 			half = 0.5 * np.pi * (1 / np.sqrt(1 - damping) + 1 / np.sqrt(1 + damping)) / omega
 			energy = ddem.EnergyBalance()
 			O.step()
@@ -55,11 +66,26 @@ def local_damping(check, cycles=3):
 			turning = 1 + np.flatnonzero((values[1:-1] - values[:-2]) * (values[2:] - values[1:-1]) < 0)
 			peaks = np.abs(values[turning])
 			check(
-				f"amplitude after {len(peaks)} half cycles, {motion}, d = {damping:g}, over that at the start [-]", peaks[-1],
-				((1 - damping) / (1 + damping))**(len(peaks) / 2), 2e-4, "half cycles of m ẍ = −k x (1 ± d)"
+				(
+					f"amplitude after {len(peaks)} half cycles, {motion}, d = {damping:g}, over "
+					"that at the start [-]"
+				),
+				peaks[-1],
+				((1 - damping) / (1 + damping))**(len(peaks) / 2),
+				2e-4,
+				"half cycles of m ẍ = −k x (1 ± d)",
 			)
-			check(f"time of a half cycle, {motion}, d = {damping:g} [s]", times[turning[-1]] / len(peaks), half, 1e-3, "half cycles of m ẍ = −k x (1 ± d)")
-			check(f"drift of the energy book, {motion}, d = {damping:g} [-]", energy.largest, 0, 1e-8, "conservation of energy", scale=1)
+			check(
+				f"time of a half cycle, {motion}, d = {damping:g} [s]",
+				times[turning[-1]] / len(peaks),
+				half,
+				1e-3,
+				"half cycles of m ẍ = −k x (1 ± d)",
+			)
+			check(
+				f"drift of the energy book, {motion}, d = {damping:g} [-]", energy.largest, 0, 1e-8,
+				"conservation of energy", scale=1
+			)
 			drawn[motion, damping] = times / half, values
 
 	def draw():
