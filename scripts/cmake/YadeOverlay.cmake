@@ -1,6 +1,6 @@
 # GPL v2 or later, see LICENSE.
-# At install time, makes DDEM_OVERLAY a YADE prefix of symbolic links to the installed YADE, so that the plugin can be added to it without rights
-# on YADE's own directories.  YADE looks there when YADE_PREFIX names it.
+# At install time, makes DDEM_OVERLAY a YADE prefix of symbolic links to the installed YADE, so that the plugin can be
+# added to it without rights on YADE's own directories.  YADE looks there when YADE_PREFIX names it.
 file(TO_CMAKE_PATH "${DDEM_OVERLAY}" overlay)
 install(CODE "
 	set(stock \"${YADE_LIBRARY_DIR}\")
@@ -24,7 +24,8 @@ install(CODE "
 	message(STATUS \"Overlay prefix of links to \${stock}: ${overlay}\")
 " COMPONENT classes)
 
-# Modules that the checkout no longer has must not be found any more, nor folders, which Python would take for empty packages.
+# Modules that the checkout no longer has must not be found any more, nor folders,
+# which Python would take for empty packages.
 install(CODE "
 	set(package \"${overlay}/${YADE_LIBRARY_SUBDIR}/py/yade/ddem\")
 	file(GLOB_RECURSE entries LIST_DIRECTORIES true RELATIVE \"\${package}\" \"\${package}/*\")

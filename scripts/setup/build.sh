@@ -2,14 +2,16 @@
 # GPL v2 or later, see LICENSE.
 # Builds the plugin and installs it into an overlay prefix: CMake and ninja find out what has changed.
 
-# build_plugin [--strict] [TARGET…]: afterwards $overlay is a YADE prefix with the plugin, and the targets (kernel_tests, kernel_bench) are built as well.
+# build_plugin [--strict] [TARGET…]: afterwards $overlay is a YADE prefix with the plugin, and the targets
+# (kernel_tests, kernel_bench) are built as well.
 build_plugin() {
 	local identity strict='' stamp=$build_dir/configured
 	if [[ ${1:-} == --strict ]]; then strict=--strict && shift; fi
 	overlay=$build_dir/overlay
 	identity="$yade_source $(stat -Lc '%s %Y' "$root$(command -v yade || echo /usr/bin/yade)") $strict"
 	case $(cat "$stamp" 2>/dev/null) in
-		"$identity" | "$identity--strict") ;; # an earlier --strict build stays strict: going back would compile everything again
+		# an earlier --strict build stays strict: going back would compile everything again
+		"$identity" | "$identity--strict") ;;
 		*) phase "configuring the plugin" configure "$stamp" "$identity" "$strict" ;;
 	esac
 	phase --if-work "building the plugin" compile "$@"
@@ -19,7 +21,8 @@ build_plugin() {
 configure() {
 	local stamp=$1 identity=$2 strict=$3
 	as_caller rm -f "$stamp"
-	inside cmake -S "$checkout" -B "$build_dir/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DYADE_SOURCE_DIR="$yade_source" -DDDEM_OVERLAY="$overlay" \
+	inside cmake -S "$checkout" -B "$build_dir/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+		-DYADE_SOURCE_DIR="$yade_source" -DDDEM_OVERLAY="$overlay" \
 		${strict:+-DDDEM_WARNINGS_AS_ERRORS=ON} || return
 	printf '%s' "$identity" | as_caller tee "$stamp" >/dev/null
 }

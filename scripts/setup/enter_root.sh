@@ -1,9 +1,10 @@
 #!/bin/bash
 # GPL v2 or later, see LICENSE.
-# Runs a command inside a Debian root, in a mount namespace of its own: nothing stays mounted, and the command replaces this process, so signals and exit codes
-# pass through.  Usage:
+# Runs a command inside a Debian root, in a mount namespace of its own: nothing stays mounted, and the command replaces
+# this process, so signals and exit codes pass through.  Usage:
 #   enter_root.sh ROOT --system -- COMMAND…                         /proc, /sys, /dev only (to install packages)
-#   enter_root.sh ROOT --caller UID GID HOME DIRECTORY… -- COMMAND…  with the caller's files at the same paths, as the caller, in the same directory
+#   enter_root.sh ROOT --caller UID GID HOME DIRECTORY… -- COMMAND…  with the caller's files at the same paths,
+#                                                                    as the caller, in the same directory
 set -euo pipefail
 
 # First half: outside the namespace.
@@ -17,7 +18,8 @@ bind_directory() {
 	mkdir -p "$root$1" 2>/dev/null && mount --rbind "$1" "$root$1"
 }
 
-# Every directory of / that is not the operating system's own (/home, /tmp, /srv, /mnt, /data …), whatever it is called here.
+# Every directory of / that is not the operating system's own (/home, /tmp, /srv, /mnt, /data …),
+# whatever it is called here.
 bind_callers_directories() {
 	local entry directory
 	for entry in /*; do
@@ -64,7 +66,8 @@ if [[ $1 == --caller ]]; then
 	bind_file /etc/localtime
 	# This machine's own libraries and languages mean nothing inside.
 	as_whom=(env -C "$here" -u LD_LIBRARY_PATH -u LD_PRELOAD -u PYTHONHOME -u LC_ALL LANG=C.UTF-8 "HOME=$home")
-	((uid == 0)) || as_whom=("$(dirname "$(readlink -f "$0")")/as_user.sh" "$uid" "$gid" "$home" "${as_whom[@]}") # the checkout is visible inside
+	# the checkout is visible inside
+	((uid == 0)) || as_whom=("$(dirname "$(readlink -f "$0")")/as_user.sh" "$uid" "$gid" "$home" "${as_whom[@]}")
 else
 	shift
 fi

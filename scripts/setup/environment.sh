@@ -1,6 +1,7 @@
 # shellcheck shell=bash disable=SC2016 # $(…) in single quotes is for apt and dpkg
 # GPL v2 or later, see LICENSE.
-# The place where YADE runs: this machine when its YADE is new enough, else the Debian 13 root.  The rest of the launcher does not care which.
+# The place where YADE runs: this machine when its YADE is new enough, else the Debian 13 root.
+# The rest of the launcher does not care which.
 
 # choose_environment: sets root (empty: this machine), and with it the cache's directories.
 choose_environment() {
@@ -82,7 +83,8 @@ get_host_headers() {
 	find_yade_source
 	[[ ! $yade_source ]] || return 0
 	version=$(host_source_version) \
-		|| fail "this YADE is not a Debian package: name its source tree, of the same version, in the environment variable YADE_SOURCE_DIR"
+		|| fail "this YADE is not a Debian package: name its source tree, of the same version," \
+			"in the environment variable YADE_SOURCE_DIR"
 	phase "YADE's headers" fetch_host_headers "$version" "$(host_headers)"
 }
 
@@ -90,11 +92,16 @@ get_host_headers() {
 fetch_host_headers() {
 	local version=$1 directory=$2 apt=$cache_dir/apt
 	as_caller mkdir -p "$apt/lists/partial" "$apt/archives/partial" "$directory.unfinished"
-	apt-get indextargets --format 'deb-src [signed-by=$(SIGNED_BY)] $(REPO_URI) $(RELEASE) $(COMPONENT)' 'Created-By: Packages' \
+	apt-get indextargets --format 'deb-src [signed-by=$(SIGNED_BY)] $(REPO_URI) $(RELEASE) $(COMPONENT)' \
+		'Created-By: Packages' \
 		| sed 's/ \[signed-by=\(\$(SIGNED_BY)\)\{0,1\}\]//' | sort -u | as_caller tee "$apt/sources.list"
-	local options=(-o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=/dev/null -o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt" -o APT::Sandbox::User=)
+	local options=(
+		-o "Dir::Etc::SourceList=$apt/sources.list" -o Dir::Etc::SourceParts=/dev/null
+		-o "Dir::State::Lists=$apt/lists" -o "Dir::Cache=$apt" -o APT::Sandbox::User=
+	)
 	as_caller apt-get "${options[@]}" update || return
-	(cd "$directory.unfinished" && as_caller apt-get "${options[@]}" source --tar-only --download-only "yade=$version") || return
+	(cd "$directory.unfinished" && as_caller apt-get "${options[@]}" \
+		source --tar-only --download-only "yade=$version") || return
 	as_caller mv "$directory.unfinished" "$directory"
 	rm -rf "$apt"
 }
@@ -105,10 +112,12 @@ newest() {
 	for file in "$@"; do [[ ! -f $file ]] || printf '%s\n' "$file"; done | sort -V | tail -n 1
 }
 
-# exec_inside COMMAND…: becomes the command, inside the environment, as the caller, with the caller's directory, files, variables and terminal.
+# exec_inside COMMAND…: becomes the command, inside the environment, as the caller, with the caller's directory, files,
+# variables and terminal.
 exec_inside() {
 	if [[ $root ]]; then
-		exec "$setup_dir/enter_root.sh" "$root" --caller "$caller_uid" "$caller_gid" "$caller_home" "$checkout" "$cache_dir" "${visible[@]}" -- "$@"
+		exec "$setup_dir/enter_root.sh" "$root" --caller "$caller_uid" "$caller_gid" "$caller_home" \
+			"$checkout" "$cache_dir" "${visible[@]}" -- "$@"
 	elif ((caller_uid != EUID)); then
 		exec "$setup_dir/as_user.sh" "$caller_uid" "$caller_gid" "$caller_home" "$@"
 	else

@@ -1,6 +1,7 @@
 # shellcheck shell=bash
 # GPL v2 or later, see LICENSE.
-# What the launcher tells people: phases with progress and duration, and errors of one clear line.  Everything goes to stderr; stdout belongs to the scripts.
+# What the launcher tells people: phases with progress and duration, and errors of one clear line.  Everything goes to
+# stderr; stdout belongs to the scripts.
 
 readonly EXIT_USAGE=2 EXIT_ENVIRONMENT=125 EXIT_INTERRUPTED=130
 
@@ -17,15 +18,17 @@ usage_error() {
 	exit $EXIT_USAGE
 }
 
-# phase [--if-work] NAME COMMAND…: runs a function or command with its output in $log_dir/NAME.log; shows progress, says how long it took.  On failure: one line,
-# and exit.  With --if-work it stays silent when the command finds nothing to do.
+# phase [--if-work] NAME COMMAND…: runs a function or command with its output in $log_dir/NAME.log; shows progress, says
+# how long it took.  On failure: one line, and exit.
+# With --if-work it stays silent when the command finds nothing to do.
 phase() {
 	local name log started=$SECONDS status=0 silent=
 	if [[ $1 == --if-work ]]; then silent=$2 && shift; fi
 	name=$1 log=$log_dir/${1//[^A-Za-z0-9]/-}.log
 	shift
 	[[ $silent ]] || say "$name …"
-	# In a subshell with a file of its own: what the command leaves behind must be on disk, where an interrupted run finds it again.
+	# In a subshell with a file of its own: what the command leaves behind must be on disk,
+	# where an interrupted run finds it again.
 	("$@") 2>&1 </dev/null | show_progress "$log" "$silent" || status=$?
 	if ((status != 0)); then
 		((status < 128)) || { say "$name: stopped; the same command goes on from here"; exit "$status"; }
@@ -38,8 +41,9 @@ duration() {
 	if (($1 < 60)); then echo "$1 s"; else echo "$(($1 / 60)) min $(($1 % 60)) s"; fi
 }
 
-# show_progress LOG [NAME]: copies stdin to LOG; on the way recognises how far debootstrap, apt and ninja say they are, and shows it: on a terminal as one line that
-# changes, elsewhere as a line every quarter.  With NAME, that is said before the first progress; LOG.work then holds whether there was any.
+# show_progress LOG [NAME]: copies stdin to LOG; on the way recognises how far debootstrap, apt and ninja say they are,
+# and shows it: on a terminal as one line that changes, elsewhere as a line every quarter.  With NAME, that is said
+# before the first progress; LOG.work then holds whether there was any.
 show_progress() {
 	local line steps=0 text percent last='' last_text='' quarter=-1 unsaid=${2:-}
 	rm -f "$1.work"
@@ -75,9 +79,12 @@ show_progress() {
 
 # reason LOG: the cause of a failed phase in a few words.
 reason() {
+	local network='could not resolve|temporary failure resolving|name resolution|unable to connect'
+	network+='|cannot initiate the connection|network is unreachable|connection (timed out|refused)'
+	network+='|failed to fetch|couldn.t download|failed getting release file'
 	if grep -qiE 'no space left on device|not enough free space|You don.t have enough free space' "$1"; then
 		echo "no space left in $cache_dir"
-	elif grep -qiE 'could not resolve|temporary failure resolving|name resolution|unable to connect|cannot initiate the connection|network is unreachable|connection (timed out|refused)|failed to fetch|couldn.t download|failed getting release file' "$1"; then
+	elif grep -qiE "$network" "$1"; then
 		echo "no network: cannot reach the Debian archive"
 	elif grep -qE '(^|: )(fatal )?[eE]rror:|^CMake Error|^E: ' "$1"; then
 		# CMake wraps its messages over several lines: take the first ones after the heading as well.

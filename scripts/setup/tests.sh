@@ -2,8 +2,9 @@
 # GPL v2 or later, see LICENSE.
 # Runs the groups of tests and adds up their results.
 
-# run_tests [--all] [PYTEST ARGUMENTS]: the kernel's GoogleTests, pytest inside YADE, and pytest alone for the tests of launcher and build.  With arguments, only pytest;
-# with files or folders among them, only those.  Succeeds when no test has failed.
+# run_tests [--all] [PYTEST ARGUMENTS]: the kernel's GoogleTests, pytest inside YADE, and pytest alone for the tests of
+# launcher and build.  With arguments, only pytest; with files or folders among them, only those.
+# Succeeds when no test has failed.
 run_tests() {
 	local results=$build_dir/test-results all='' argument folder options=() in_yade=() alone=() reports=()
 	[[ ${1:-} == --all ]] && all=--all && shift
@@ -35,12 +36,14 @@ run_tests() {
 
 	if (($# == 0)); then
 		say "kernel (GoogleTest)"
-		inside "$build_dir/build/kernel_tests" --gtest_brief=1 "--gtest_output=xml:$results/kernel.xml" "${all:---gtest_filter=-*Slow*}" || true
+		inside "$build_dir/build/kernel_tests" --gtest_brief=1 "--gtest_output=xml:$results/kernel.xml" \
+			"${all:---gtest_filter=-*Slow*}" || true
 		reports+=("kernel=$results/kernel.xml")
 	fi
 	if ((${#in_yade[@]})); then
 		say "inside YADE (pytest)"
-		inside yade -n -x "$checkout/tests/yade/run_pytest.py" "${pytest[@]}" "--junitxml=$results/yade.xml" "${in_yade[@]}" || true
+		inside yade -n -x "$checkout/tests/yade/run_pytest.py" "${pytest[@]}" "--junitxml=$results/yade.xml" \
+			"${in_yade[@]}" || true
 		reports+=("yade=$results/yade.xml")
 	fi
 	if ((${#alone[@]})); then
