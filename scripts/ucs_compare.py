@@ -80,9 +80,9 @@ def rigid_test(options):
 	platens = ddem.bonded.platens(
 		sample, options.velocity, options.ramp, stiffness=10 * young, both=options.drive == "both"
 	)
-	hold(sample, packing, axis=2, dof="z")
+	sample.hold_faces(axis=2, dof="z")
 	if options.ends == "rough":
-		hold(sample, packing, axis=1, dof="x")
+		sample.hold_faces(axis=1, dof="x")
 	O.engines = ddem.bonded.engines(platens)
 	critical = ddem.bonded.critical_time_step()
 	O.dt = options.safety * critical
@@ -157,14 +157,6 @@ def deformable_test(options):
 			),
 		],
 	)
-
-
-def hold(sample, packing, axis, dof):
-	"""Hold the spheres that touch the two faces across *axis* in one direction."""
-	for face in (packing.lower[axis], packing.upper[axis]):
-		for row in (abs(packing.centres[:, axis] - face) < 1.001 * packing.radii).nonzero()[0]:
-			state = O.bodies[int(sample.ids[row])].state
-			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | {dof}))
 
 
 def crush(model, options):

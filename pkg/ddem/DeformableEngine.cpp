@@ -296,14 +296,14 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 {
 	// Called outside any parallel section, since EnergyTracker creates ids lazily and without a lock.
 	EnergyTracker& book = *scene->energy;
-	book.add(e.kinetic, "kinetic", ids_[0], true);
-	book.add(e.elastic, "elastPotential", ids_[1], true);
-	book.add(e.rotation, "elastRotation", ids_[2], true);
-	book.add(e.plastic, "plasticFlow", ids_[3], true);
-	book.add(e.damage, "damage", ids_[4], true);
-	book.add(-e.gravityWork, "gravWork", ids_[5], false);
-	book.add(-e.externalWork, "externalWork", ids_[6], false);
-	book.add(e.dampingLoss, "nonviscDamp", ids_[7], false);
+	book.add(e.kinetic, "kinetic", entry.kinetic, true);
+	book.add(e.elastic, "elastPotential", entry.elastic, true);
+	book.add(e.rotation, "elastRotation", entry.rotation, true);
+	book.add(e.plastic, "plasticFlow", entry.plastic, true);
+	book.add(e.damage, "damage", entry.damage, true);
+	book.add(-e.gravityWork, "gravWork", entry.gravityWork, false);
+	book.add(-e.externalWork, "externalWork", entry.externalWork, false);
+	book.add(e.dampingLoss, "nonviscDamp", entry.dampingLoss, false);
 }
 
 // ---- saving ---------------------------------------------------------------------------------------------------------

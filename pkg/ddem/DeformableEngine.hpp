@@ -156,7 +156,11 @@ private:
 	unsigned long                         syncs   = 0;     ///< of O.forces,
 	                                                       ///< as many as there were after the last step
 	Showings                              showings;
-	int                                   ids_[8] = { -1, -1, -1, -1, -1, -1, -1, -1 };
+	/// Places in O.energy, by the names of ddem::StepEnergy.
+	struct {
+		int kinetic = -1, elastic = -1, rotation = -1, plastic = -1, damage = -1, gravityWork = -1, externalWork = -1,
+		    dampingLoss = -1;
+	} entry;
 
 	ddem::RotationTreatment rotationTreatment() const;
 	SampleSettings          settings(const Scene& of) const;

@@ -19,12 +19,13 @@ namespace {
 
 	enum class Touches { Nothing, OneState };
 
-	std::vector<LaggingState*> lagging;
-	std::atomic<bool>          anyLags { false }; ///< whether there are any, for calls to ask without a lock
-	std::mutex                 busy;              ///< held while State is shown, and while `lagging` changes
+	// Never destroyed: Python may call to the very end.
+	std::vector<LaggingState*>& lagging = *new std::vector<LaggingState*>;
+	std::atomic<bool>           anyLags { false }; ///< whether there are any, for calls to ask without a lock
+	std::mutex& busy = *new std::mutex;            ///< held while State is shown, and while `lagging` changes
 
 	/// What functions that Python knows touch; others may touch everything. Their objects are kept alive for good.
-	std::unordered_map<PyObject*, Touches> known;
+	std::unordered_map<PyObject*, Touches>& known = *new std::unordered_map<PyObject*, Touches>;
 
 	ternaryfunc calledByBoost = nullptr;
 
@@ -68,6 +69,10 @@ namespace {
 		PyTypeObject* const type = Py_TYPE(known.begin()->first);
 		calledByBoost            = type->tp_call;
 		type->tp_call            = callWatched;
+		// f.__call__(…), too
+		PyObject* const method = PyDict_GetItemString(type->tp_dict, "__call__");
+		if (method && Py_TYPE(method) == &PyWrapperDescr_Type)
+			reinterpret_cast<PyWrapperDescrObject*>(method)->d_wrapped = reinterpret_cast<void*>(callWatched);
 		PyType_Modified(type);
 	}
 

@@ -22,7 +22,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 		Materials must be in O.materials.
 	:param seed: draws the fracture energy of every concrete triangle from a normal distribution with mean G_f of
 		its material, standard deviation *spread* G_f, not below *floor* G_f (Zubelewicz 2018, section 4.3).
-		None: all have the material's G_f.
+		None: all have the material's G_f. What is drawn is a triangle's own for good: a later change of the
+		material's G_f does not reach it.
 	:param thickness: of the plane-strain slice [m].
 	:param position: offset added to the mesh's coordinates [m].
 	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; once flow has

@@ -153,6 +153,15 @@ class BondedSample:
 		"""Radii (n,) [m]."""
 		return fixed(np.array([O.bodies[i].shape.radius for i in self.ids]))
 
+	def hold_faces(self, axis, dof):
+		"""Hold the spheres that touch the two faces of the box across *axis* (0, 1 or 2) in one direction, "x",
+		"y" or "z": rough platens, or plane strain."""
+		centres = np.array([O.bodies[i].state.refPos[axis] for i in self.ids])
+		for face in (self.lower[axis], self.upper[axis]):
+			for i in self.ids[abs(centres - face) < 1.001 * self.radii]:
+				state = O.bodies[i].state
+				state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | {dof}))
+
 	@property
 	def degrees_of_freedom(self):
 		"""Unknowns of the sample: six per sphere, three where it is one layer."""

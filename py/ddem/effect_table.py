@@ -70,9 +70,8 @@ _PARAMETERS = {
 _UNITS = {"strength": "Pa", "fractureEnergy": "J/m³", "eosPressure": "Pa"}
 #: fields of a law's state by the effect that needs them; the first that is on pays for a field
 _FIELDS = (
-	("viscoplasticFlow", ("strain", "plasticStrain")), (
-		"damage", ("strain", "plasticStrain", "damageTensor", "closure")
-	),
+	("viscoplasticFlow", ("strain", "plasticStrain")),
+	("damage", ("strain", "plasticStrain", "damageTensor", "closure")),
 	("equationOfState", ("stiffening", )),
 )
 #: fields that only the energy book has
@@ -80,8 +79,7 @@ _BOOK = {"strain", "lastStrain", "lastStress", "plasticDissipation", "damageDiss
 #: engines that add no forces to triangles, as in EngineOrder.cpp
 _QUIET = {
 	"ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop",
-	"ViscousBodyDamping",
-	"GlobalStiffnessTimeStepper", "DeformableTimeStepper", "DeformableEngine"
+	"ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper", "DeformableEngine"
 }
 
 
@@ -360,7 +358,7 @@ def _law(group, material, told, shapes, state):
 	for effect, names in _FIELDS:
 		if effect in on:
 			paid[effect] = sum(bytes_of.pop(name, 0) for name in names)
-	book = sum(bytes_of.pop(name) for name in list(bytes_of) if name in _BOOK) if O.trackEnergy else 0
+	book = sum(bytes_of.pop(name) for name in list(bytes_of) if name in _BOOK)
 	measures = _measures(material, told, state)
 
 	law = Effect("law", True, f"{told['law']}, the law of {_named(material)}")
@@ -385,7 +383,8 @@ def _law(group, material, told, shapes, state):
 	if O.trackEnergy:
 		group.add("energy book", True, "O.trackEnergy = True", book)
 	else:
-		group.add("energy book", False, "O.trackEnergy = False")
+		stays = ": its fields stay, from when it was on" if book else ""
+		group.add("energy book", False, f"O.trackEnergy = False{stays}", book)
 	if state is None:  # the material knows nothing of what its triangles have of their own
 		group.bytes += sum(group[name].bytes for name in shapes.bytes if name in group)
 	law.bytes = group.bytes - sum(effect.bytes for effect in group.effects)  # what no effect has to itself

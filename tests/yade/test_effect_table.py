@@ -204,6 +204,21 @@ def test_bytes_are_what_the_effects_that_are_on_need(on):
 		assert {name for name in SWITCHES if group[name].runs} == asked
 
 
+def test_a_book_that_was_closed_has_its_bytes_still():
+	concrete()
+	block()
+	O.trackEnergy = True
+	engine = start()
+	steps(2)
+	kept = ddem.effects()["concrete"]["energy book"].bytes
+	O.trackEnergy = False
+	steps(2)
+	group = ddem.effects()["concrete"]
+	assert group.bytes == engine.groups()[0]["bytes"] and group["law"].bytes == 0
+	assert group["energy book"].bytes == kept > 0 and not group["energy book"].runs
+	assert group["energy book"].why == "O.trackEnergy = False: its fields stay, from when it was on"
+
+
 def test_numbers_that_triangles_have_of_their_own_count():
 	concrete()
 	block(seed=1)

@@ -72,6 +72,8 @@ READ = {
 	"getattr": lambda s: getattr(O.bodies[s.node].state, "vel"),
 	"class's property": lambda s: State.vel.fget(O.bodies[s.node].state),
 	"function kept": lambda s: KEPT(O.bodies[s.node].state),
+	"function's __call__": lambda s: [KEPT.__call__(O.bodies[s.node].state), utils.kineticEnergy.__call__()],
+	"map": lambda s: list(map(KEPT, s.held)),
 	"forces": lambda s: [O.forces.f(int(i)) for i in s.top],
 	"arrays": lambda s: [s.block.positions, s.block.stress],
 	"shape": lambda s: [O.bodies[s.core].shape.stress[0], O.bodies[s.core].shape.rotation],

@@ -241,7 +241,7 @@ def _rigid(setup, values, seed, velocity, cache):
 	)
 	faces = [(1, "x")] if setup.rough else []
 	for axis, dof in faces + ([(2, "z")] if setup.held else []):
-		_hold(sample, spheres, axis, dof)
+		sample.hold_faces(axis, dof)
 	O.engines = ddem.bonded.engines(platens, setup.viscosity, convention=setup.convention)
 	return platens, ddem.bonded.critical_time_step()
 
@@ -261,15 +261,6 @@ def _deformable(setup, values, seed, velocity, _):
 		DeformableEngine(rotation=setup.rotation),
 	]
 	return platens, O.engines[-1].criticalTimeStep()
-
-
-def _hold(sample, spheres, axis, dof):
-	"""Hold the spheres that touch the two faces across *axis* in one direction."""
-	from yade import O
-	for face in (spheres.lower[axis], spheres.upper[axis]):
-		for row in (abs(spheres.centres[:, axis] - face) < 1.001 * spheres.radii).nonzero()[0]:
-			state = O.bodies[int(sample.ids[row])].state
-			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | {dof}))
 
 
 # ---- each in a YADE of its own ----

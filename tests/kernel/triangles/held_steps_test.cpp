@@ -277,7 +277,7 @@ TEST(HeldSteps, energyBookClosesInEveryStep) // ½(σ_old + σ_new):Δε = Δ(st
 {
 	const auto path = [](int step, std::size_t i) {
 		const double t = (i % 3 == 0 && step > 60 && step < 90) ? 60 : step;
-		const double rate = i % 5 == 0 ? 1e-5 : i % 5 == 1 ? -1e-5 : 2e-6; // crushed, torn, and what may wait
+		const double rate = i % 5 == 0 ? 1e-5 : i % 5 == 1 ? -3e-5 : 2e-6; // crushed, torn, and what may wait
 		return crushing(rate * (t < 120 ? t : 240 - t), i);
 	};
 	for (const unsigned interval : { 1u, 4u })
@@ -329,7 +329,7 @@ TEST(HeldSteps, energyBookClosesInEveryStep) // ½(σ_old + σ_new):Δε = Δ(st
 				}
 			}
 			EXPECT_GT(dissipated, 100); // [J/m³]
-			EXPECT_GT(damaged, 0.1);    // so that some lanes of a batch never wait
+			EXPECT_GT(damaged, 0.02);   // so that some lanes of a batch never wait
 		}
 }
 

@@ -89,7 +89,6 @@ public:
 		return { p.bulk, p.shear, p.rotationStiffness };
 	}
 	bool stiffensInRuns() const override { return Law::stiffens(on); }
-	bool knowsDamage() const override { return Law::damages(on); }
 
 	void start(const std::vector<TriangleProperties>& all) override
 	{

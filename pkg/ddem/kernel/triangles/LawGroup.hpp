@@ -157,7 +157,6 @@ public:
 	virtual unsigned                      effects() const           = 0; ///< those that are on
 	virtual TriangleStiffness             stiffness() const         = 0; ///< at no pressure, without damage
 	virtual bool                          stiffensInRuns() const    = 0; ///< whether stiffening() may exceed 1
-	virtual bool                          knowsDamage() const       = 0; ///< whether damage() may exceed 0
 
 	// --- state
 	/// Virgin state of so many triangles, from `begin` to `end`.
