@@ -64,7 +64,7 @@ public:
 		"and the way out.\n\n"
 		"Limits: plane strain in the xy plane; topology is fixed once running (appending triangles is "
 		"possible, erasing is not). While a run goes on in the background, State seen from other threads is up "
-		"to 0.2 s old (older in large samples, so that showing it takes a twentieth of the time at most); "
+		"to 0.2 s old (older in large samples, so that showing it takes a fiftieth of the time at most); "
 		"after O.pause(), reading anything from the engine brings it up to date.",
 		((std::string,rotation,"cosserat",Attr::triggerPostLoad,
 			"How elements follow rotation: 'cosserat' (cores rotate, tied by "

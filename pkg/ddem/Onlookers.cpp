@@ -11,7 +11,7 @@ namespace {
 
 	/// other threads see no older state where that is cheap
 	constexpr auto shortestUnseen = std::chrono::milliseconds(200);
-	constexpr int  shareOfTime    = 20; ///< a showing may take one part in so many of the time between
+	constexpr int  shareOfTime    = 50; ///< a showing may take one part in so many of the time between
 
 	/// Whether a periodic engine may act at the given step and times, as PeriodicEngine::isActivated decides;
 	/// early by `slack` of real time rather than late.
