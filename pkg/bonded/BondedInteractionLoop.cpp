@@ -234,7 +234,7 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 	}
 	applyLoads();
 	if (scene->trackEnergy) bondLaw.bookBondEnergy(stored - lost);
-	if (onlooker(*scene, *this, showings, neverLooksAtBonds) != Onlooker::Nobody) {
+	if (onlooker(*scene, *this, showings, neverLooksAtBonds, 0.01) != Onlooker::Nobody) {
 		showings.begin();
 		writeBack();
 		showings.end();

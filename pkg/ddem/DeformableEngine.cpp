@@ -23,6 +23,11 @@ namespace {
 
 } // namespace
 
+DeformableEngine::~DeformableEngine()
+{
+	if (sample) sample->leave();
+}
+
 std::vector<DeformableEngine*> DeformableEngine::in(const Scene& scene)
 {
 	std::vector<DeformableEngine*> found;
@@ -106,6 +111,7 @@ void DeformableEngine::readIfNeeded(Scene& of)
 {
 	scene = &of;
 	if (upToDate(of)) return;
+	if (sample && sample->shown == Shown::Touched) sample->finishLook(of);
 	const bool       agreed = agrees();
 	const StateStore known  = stateToCarry(of);
 	virgin                  = known.cores.empty();
@@ -154,11 +160,12 @@ shared_ptr<Exposure> DeformableEngine::currentOf(const shared_ptr<Exposure>& sam
 		if (engine->sample != sample) continue;
 		if (!engine->upToDate(now)) return nullptr;
 		if (Omega::instance().isRunning()) return sample;
+		const auto lock = engine->betweenSteps();
 		if (engine->agrees()) {
 			sample->importTriangle(now, row);
 			if (!engine->upToDate(now)) return nullptr; // its body has got another material
 		} else
-			engine->current();
+			engine->takeUpEverything(now);
 		return sample;
 	}
 	return sample; // of a scene that is gone, or of an engine taken out of it
@@ -174,12 +181,13 @@ Exposure& DeformableEngine::current()
 	if (!mine)
 		throw std::runtime_error(
 		        "this DeformableEngine is not in O.engines, so it has no triangles; put it there first");
+	if (Omega::instance().isRunning()) {
+		readIfNeeded(now);
+		return *sample;
+	}
+	const auto lock = betweenSteps();
 	readIfNeeded(now);
-	if (Omega::instance().isRunning()) return *sample;
-	if (sample->shown == Shown::All)
-		takeUpChanges(now);
-	else // paused between two looks, or in one
-		sample->finishLook(now);
+	takeUpEverything(now);
 	return *sample;
 }
 
@@ -208,10 +216,12 @@ void DeformableEngine::checkStart() const
 
 void DeformableEngine::action()
 {
+	const std::lock_guard<std::mutex> lock(acting);
 	if (sample) sample->endLook();
 	// before anything is read from bodies that an engine in the wrong place may have spoilt
 	if (order.check(*scene, *this)) EngineOrder::checkDrivenNodes(*scene);
 	readIfNeeded(*scene);
+	const bool anythingDone = sample->shown == Shown::All; // by engines or Python, also to forces
 	if (sample->shown != Shown::Constrained) {
 		takeUpChanges(*scene);
 		EngineOrder::checkDrivenNodes(*scene);
@@ -224,7 +234,7 @@ void DeformableEngine::action()
 	sample->importPrescribed();
 	const std::string warning = guard.check(*scene, *sample, order.stepper, order.otherStepper, inverted == "stop");
 	if (!warning.empty()) LOG_WARN(warning);
-	const bool forces = forcesAdded();
+	const bool forces = forcesAdded(anythingDone);
 	sample->importForces(scene->forces, forces);
 
 	const Vector3r     felt = order.gravityFelt(*this);
@@ -244,35 +254,55 @@ void DeformableEngine::action()
 	syncs = scene->forces.syncCount;
 }
 
+std::unique_lock<std::mutex> DeformableEngine::betweenSteps()
+{
+	std::unique_lock<std::mutex> lock(acting, std::try_to_lock);
+	if (!lock.owns_lock()) { // after O.pause() the step in hand goes on, and may need Python
+		PyThreadState* const python = PyEval_SaveThread();
+		lock.lock();
+		PyEval_RestoreThread(python);
+	}
+	return lock;
+}
+
+void DeformableEngine::takeUpEverything(Scene& of)
+{
+	if (sample->shown == Shown::All)
+		takeUpChanges(of);
+	else // paused between two looks, or in one
+		sample->finishLook(of);
+}
+
 void DeformableEngine::takeUpChanges(Scene& of)
 {
 	sample->importChanges(of);
 	readIfNeeded(of); // where a body has got another material
 }
 
-bool DeformableEngine::forcesAdded() const
+bool DeformableEngine::forcesAdded(bool anythingDone) const
 {
 	const ForceContainer& f = scene->forces;
 	if (f.getPermForceUsed()) return true;
 	// an engine that may add forces need not do so: adding leaves the container unsynced, or synced once more
-	return order.collectForces && !(f.lastReset == scene->iter && f.synced && f.syncCount == syncs);
+	const bool untouched = !anythingDone && f.lastReset == scene->iter && f.synced && f.syncCount == syncs;
+	return order.collectForces && !untouched;
 }
 
 void DeformableEngine::show()
 {
-	const Onlooker who    = onlooker(*scene, *this, showings, EngineOrder::neverLooks);
+	const Onlooker who    = onlooker(
+	        *scene, *this, showings, EngineOrder::neverLooks, std::numeric_limits<Real>::infinity());
 	const bool     lags    = who == Onlooker::Python && pythonLooks::watched();
-	const bool     all     = who == Onlooker::Anybody || (who == Onlooker::Python && !lags);
 	const bool     picture = who == Onlooker::OtherThreads || (lags && showings.due());
-	if (all || picture) {
+	if (picture) {
 		showings.begin();
 		sample->showPicture();
 		showings.end();
 	}
-	if (all)
-		sample->shown = Shown::All;
-	else if (lags)
+	if (lags)
 		sample->beginLook();
+	else if (who == Onlooker::Anybody || who == Onlooker::Python)
+		sample->exposeAll();
 	else
 		sample->exposeConstrained();
 	if (who != Onlooker::Nobody && scene->forces.lastReset == scene->iter) sample->exposeReactions(scene->forces);
@@ -334,6 +364,7 @@ bool DeformableEngine::timeStepUnchecked(Scene& of) { return !upToDate(of) || gu
 
 Real DeformableEngine::stableStep(Scene& of, Real enough)
 {
+	const std::lock_guard<std::mutex> lock(acting);
 	readIfNeeded(of);
 	if (sample->shown != Shown::Constrained) takeUpChanges(of);
 	return sample->timeStep(enough).step;

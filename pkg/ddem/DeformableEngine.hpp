@@ -7,13 +7,16 @@
 #include <pkg/ddem/Onlookers.hpp>
 #include <pkg/ddem/TimeStepGuard.hpp>
 
+#include <mutex>
+
 namespace yade {
 
 struct SampleSettings;
 
 class DeformableEngine : public GlobalEngine {
 public:
-	virtual ~DeformableEngine() = default;
+	/// Leaves State as the arrays are: who comes after takes it from there.
+	virtual ~DeformableEngine();
 
 	void action() override;
 
@@ -148,6 +151,7 @@ public:
 
 private:
 	shared_ptr<Exposure>                  sample;
+	std::mutex                            acting; ///< held during a step
 	EngineOrder                           order;
 	TimeStepGuard                         guard;
 	bool                                  stale   = true; ///< settings changed since the arrays were built
@@ -158,8 +162,8 @@ private:
 	Showings                              showings;
 	/// Places in O.energy, by the names of ddem::StepEnergy.
 	struct {
-		int kinetic = -1, elastic = -1, rotation = -1, plastic = -1, damage = -1, gravityWork = -1, externalWork = -1,
-		    dampingLoss = -1;
+		int kinetic = -1, elastic = -1, rotation = -1, plastic = -1, damage = -1, gravityWork = -1,
+		    externalWork = -1, dampingLoss = -1;
 	} entry;
 
 	ddem::RotationTreatment rotationTreatment() const;
@@ -168,7 +172,10 @@ private:
 	bool                    upToDate(Scene& of);
 	bool                    agrees() const { return sample ? sample->shown == Shown::All : exposed; }
 	void                    takeUpChanges(Scene& of);
-	bool                    forcesAdded() const;
+	void                    takeUpEverything(Scene& of);
+	bool                    forcesAdded(bool anythingDone) const;
+	/// To be held while arrays are read or changed from outside of a run.
+	std::unique_lock<std::mutex> betweenSteps();
 	void                    show();
 	void                    checkStart() const;
 	void                    bookEnergy(const ddem::StepEnergy&);

@@ -89,6 +89,7 @@ StateStore storeOfFormerEngines(const Scene& scene, const std::vector<shared_ptr
 	for (const auto& b : triangles) {
 		const DeformableTriangle& shape = triangleShape(*b);
 		if (!shape.system) continue;
+		if (const auto former = shape.exposure.lock()) former->leave(); // State may lag: a run was paused
 		const ddem::TriangleSystem& s   = *shape.system;
 		SampleIds&                  ids = samples[&s];
 		if (ids.core.empty()) {
@@ -268,8 +269,9 @@ void Exposure::expose(std::size_t row) const
 
 void Exposure::showPicture() const
 {
+	// a process that a command has forked has none of the threads
 	const auto rows = std::ptrdiff_t(nodes.size() + cores.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (!pythonLooks::inForkedProcess())
 	for (std::ptrdiff_t row = 0; row < rows; row++)
 		expose(std::size_t(row));
 }
@@ -277,7 +279,13 @@ void Exposure::showPicture() const
 void Exposure::exposeAll()
 {
 	showPicture();
+	allIsShown();
+}
+
+void Exposure::allIsShown()
+{
 	shown = Shown::All;
+	rowOfState.clear(); // a body may get another State now
 }
 
 void Exposure::exposeConstrained()
@@ -296,7 +304,7 @@ void Exposure::beginLook()
 	exposeConstrained();
 	shown = Shown::Touched;
 	touched.clear();
-	look++;
+	lookNumber++;
 	pythonLooks::begin(*this);
 }
 
@@ -314,14 +322,14 @@ void Exposure::show(const State& state)
 	const auto found = rowOfState.find(&state);
 	if (found == rowOfState.end() || wasTouched(found->second)) return;
 	if (!isConstrained[found->second]) expose(found->second);
-	lookOfRow[found->second] = look;
+	lookOfRow[found->second] = lookNumber;
 	touched.push_back(found->second);
 }
 
 void Exposure::exposeUntouched() const
 {
 	const auto rows = std::ptrdiff_t(nodes.size() + cores.size());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (!pythonLooks::inForkedProcess())
 	for (std::ptrdiff_t row = 0; row < rows; row++)
 		if (!isConstrained[std::size_t(row)] && !wasTouched(std::size_t(row))) expose(std::size_t(row));
 }
@@ -330,8 +338,15 @@ void Exposure::showAll()
 {
 	if (shown != Shown::Touched) return;
 	exposeUntouched();
-	rowOfState.clear(); // a body may get another State now
-	shown = Shown::All;
+	allIsShown();
+}
+
+void Exposure::leave()
+{
+	endLook();
+	if (shown == Shown::All) return;
+	exposeUntouched();
+	allIsShown();
 }
 
 void Exposure::finishLook(const Scene& scene)
@@ -393,7 +408,10 @@ void Exposure::importCore(const Scene& scene, std::size_t i, bool driven, bool& 
 
 void Exposure::importChanges(const Scene& scene)
 {
-	if (shown == Shown::Constrained || (shown == Shown::Touched && touched.empty())) return;
+	if (shown == Shown::Constrained) return;
+	// the look may still be open, to other threads as well
+	const auto lock = shown == Shown::Touched ? pythonLooks::lock() : std::unique_lock<std::mutex>();
+	if (shown == Shown::Touched && touched.empty()) return;
 	bool       blockedChanged = false;
 	const auto driven         = drivenBodies(scene);
 	const auto isDriven = [&](Body::id_t id) { return std::size_t(id) < driven.size() && driven[std::size_t(id)]; };

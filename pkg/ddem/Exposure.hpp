@@ -77,6 +77,8 @@ public:
 	/// After a look that has ended otherwise than by a step:
 	/// State of all, with what was changed meanwhile taken up.
 	void finishLook(const Scene& scene);
+	/// For good: State of all, but for what was changed meanwhile.
+	void leave();
 	/** Takes up what was changed in State, as far as it has been shown.
 	 * \throws std::invalid_argument for values that are not finite and for bodies erased from the scene. */
 	void importChanges(const Scene& scene);
@@ -125,13 +127,17 @@ private:
 	std::vector<unsigned>                         lookOfRow;  ///< the last look in which a row was touched
 	std::vector<std::size_t>                      touched;    ///< rows, in this look
 	std::vector<char> isConstrained; ///< by row: State has been written, and kinematic engines may have acted since
-	unsigned                                      look = 0;
+	unsigned                                      lookNumber = 0;
 
 	void show(const State& state) override;
 	void showAll() override;
-	bool wasTouched(std::size_t row) const { return row < lookOfRow.size() && lookOfRow[row] == look; }
+	bool wasTouched(std::size_t row) const
+	{
+		return shown == Shown::Touched && row < lookOfRow.size() && lookOfRow[row] == lookNumber;
+	}
 	void expose(std::size_t row) const;
 	void exposeUntouched() const;
+	void allIsShown();
 
 	void countBodies(const Scene& scene);
 	void applyBlockedDegreesOfFreedom();

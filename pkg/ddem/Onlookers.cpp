@@ -33,11 +33,14 @@ bool Showings::due() const
 	return since > shortestUnseen && since > shareOfTime * cost;
 }
 
-Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&))
+Onlooker onlooker(
+        const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&),
+        Real clockSlack)
 {
 	const long next = scene.iter + 1;
 	const Real then = scene.time + scene.dt;
 	if (!Omega::instance().isRunning()) return Onlooker::Anybody; // O.step, or a pause was asked for
+	if (!scene._nextEngines.empty()) return Onlooker::Anybody;     // others act in the next step
 	if (scene.stopAtIter > 0 && next >= scene.stopAtIter) return Onlooker::Anybody;
 	if (scene.stopAtTime > 0 && then >= scene.stopAtTime * (1 - 1e-12)) return Onlooker::Anybody;
 	bool before = true; // engines before this one act next in the next step
@@ -49,7 +52,7 @@ Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showin
 		}
 		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
-		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, 0.01))
+		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, clockSlack))
 			continue;
 		if (typeid(*e) != typeid(PyRunner)) return Onlooker::Anybody;
 		python = true;

@@ -12,7 +12,7 @@ namespace yade {
 enum class Onlooker {
 	Nobody,
 	OtherThreads, ///< a window, or a shell beside a run: they see a picture now and then, and change nothing
-	Python,       ///< commands of PyRunner only
+	Python,       ///< commands of PyRunner only, unless one of them changes which engines act
 	Anybody       ///< the end of a run, or an engine that may read and change bodies
 };
 
@@ -32,7 +32,11 @@ private:
  * \param self the engine; where it stands in O.engines says who acts in this step and who in the next
  * \param showings when State was last made visible
  * \param neverLooks engines that are known not to look
+ * \param clockSlack how long before it is due an engine counts that acts by the clock [s]: while others act, it may
+ * become so; infinity: such an engine always counts
  */
-Onlooker onlooker(const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&));
+Onlooker onlooker(
+        const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&),
+        Real clockSlack);
 
 } // namespace yade

@@ -5,9 +5,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <mutex>
 #include <unordered_map>
 #include <vector>
+
+#include <pthread.h>
 
 namespace yade {
 
@@ -27,19 +28,21 @@ namespace {
 	/// What functions that Python knows touch; others may touch everything. Their objects are kept alive for good.
 	std::unordered_map<PyObject*, Touches>& known = *new std::unordered_map<PyObject*, Touches>;
 
+	bool forked = false;
+
 	ternaryfunc calledByBoost = nullptr;
 
 	void showWhatIsTouched(PyObject* function, PyObject* arguments)
 	{
 		const auto touches = known.find(function);
 		if (touches == known.end()) {
-			const std::lock_guard<std::mutex> lock(busy);
+			const std::lock_guard<std::mutex> held(busy);
 			for (LaggingState* bodies : lagging)
 				bodies->showAll();
 		} else if (touches->second == Touches::OneState && PyTuple_GET_SIZE(arguments) > 0) {
 			const boost::python::extract<const State&> state(PyTuple_GET_ITEM(arguments, 0));
 			if (!state.check()) return;
-			const std::lock_guard<std::mutex> lock(busy);
+			const std::lock_guard<std::mutex> held(busy);
 			for (LaggingState* bodies : lagging)
 				bodies->show(state());
 		}
@@ -72,8 +75,16 @@ namespace {
 		// f.__call__(…), too
 		PyObject* const method = PyDict_GetItemString(type->tp_dict, "__call__");
 		if (method && Py_TYPE(method) == &PyWrapperDescr_Type)
-			reinterpret_cast<PyWrapperDescrObject*>(method)->d_wrapped = reinterpret_cast<void*>(callWatched);
+			reinterpret_cast<PyWrapperDescrObject*>(method)->d_wrapped
+			        = reinterpret_cast<void*>(callWatched);
 		PyType_Modified(type);
+		// os.fork() and multiprocessing in a command
+		pthread_atfork(
+		        [] { busy.lock(); }, [] { busy.unlock(); },
+		        [] {
+			        busy.unlock();
+			        forked = true;
+		        });
 	}
 
 } // namespace
@@ -96,9 +107,13 @@ bool watched()
 	return success;
 }
 
+std::unique_lock<std::mutex> lock() { return std::unique_lock<std::mutex>(busy); }
+
+bool inForkedProcess() { return forked; }
+
 void begin(LaggingState& bodies)
 {
-	const std::lock_guard<std::mutex> lock(busy);
+	const std::lock_guard<std::mutex> held(busy);
 	if (std::find(lagging.begin(), lagging.end(), &bodies) == lagging.end()) lagging.push_back(&bodies);
 	anyLags = true;
 }
@@ -106,7 +121,7 @@ void begin(LaggingState& bodies)
 void end(LaggingState& bodies)
 {
 	if (!anyLags) return;
-	const std::lock_guard<std::mutex> lock(busy);
+	const std::lock_guard<std::mutex> held(busy);
 	lagging.erase(std::remove(lagging.begin(), lagging.end(), &bodies), lagging.end());
 	anyLags = !lagging.empty();
 }

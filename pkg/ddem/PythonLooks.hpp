@@ -5,6 +5,8 @@
 
 #include <pkg/ddem/YadeInclude.hpp>
 
+#include <mutex>
+
 namespace yade {
 
 /** Bodies whose State lags behind the arrays of an engine.
@@ -31,6 +33,10 @@ namespace pythonLooks {
 	void begin(LaggingState& bodies);
 	/// ... until here. Nothing is shown to any thread once this has returned.
 	void end(LaggingState& bodies);
+	/// Held while State is shown.
+	std::unique_lock<std::mutex> lock();
+	/// Whether this process was forked by one in which calls were watched.
+	bool inForkedProcess();
 
 } // namespace pythonLooks
 

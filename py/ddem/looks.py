@@ -10,18 +10,21 @@ import re
 
 from yade import minieigenHP, wrapper
 
-_OMEGA = """
+#: of Omega: what is called, and what is read
+_OMEGA = "labeledEngine"
+_OMEGA_READ = """
 	iter subStep subStepping stopAtIter stopAtTime time realtime speed dt dynDt dynDtAvailable running filename
-	numThreads timingEnabled forceSyncCount labeledEngine tags energy forces
+	numThreads timingEnabled forceSyncCount tags energy forces
+	engines bodies interactions materials cell periodic trackEnergy
 """
-_OMEGA_READ = "engines bodies interactions materials cell periodic trackEnergy"  # setting them may change bodies
+_BODY_READ = "dynamic bounded aspherical mask mat isStandalone isClump isClumpMember"
 _METHODS = {
 	"BodyContainer": "__getitem__ __len__ __iter__",
 	"BodyIterator": "__iter__ __next__ next",
 	"InteractionContainer": "__getitem__ __len__ __iter__ has countReal nth withBody withBodyAll all",
 	"InteractionIterator": "__iter__ __next__ next",
 	"MaterialContainer": "__getitem__ __len__ index",
-	"ForceContainer": "f t m addF addT permF permT setPermF setPermT reset getPermForceUsed syncCount",
+	"ForceContainer": "f t m addF addT permF permT setPermF setPermT reset getPermForceUsed",
 	"EnergyTracker": "__getitem__ keys items total",
 	"TagsWrapper": "__getitem__ __setitem__ keys has_key",
 	# our own read the arrays, not State
@@ -33,7 +36,9 @@ _TRIGGERS_POST_LOAD = 4  # Attr::triggerPostLoad: code that may look at anything
 
 def _parts(member):
 	"""The functions behind a class's member: of a property reading and writing."""
-	return [member.fget, member.fset] if isinstance(member, property) else [member, None]
+	if isinstance(member, property):
+		return [member.fget, member.fset]
+	return [member.__func__ if isinstance(member, staticmethod) else member, None]
 
 
 def _functions(found):
@@ -54,14 +59,17 @@ def touching_one_state():
 
 
 def touching_nothing():
-	"""Functions that neither read nor write State of any body, nor anything that the engine's arrays depend on."""
+	"""Functions that neither read nor write State of any body, nor anything that the engine's arrays depend on,
+	nor what decides which engines act, and may look, in the next step."""
 	found = []
 	for owner in vars(wrapper).values():
 		if not isinstance(owner, type) or issubclass(owner, wrapper.State):
 			continue
 		# Setting an attribute of a body, shape or material means something to the arrays;
 		# of other engines it does not.
-		settable = issubclass(owner, wrapper.Engine) and owner is not wrapper.DeformableEngine
+		# Those of Engine and PeriodicEngine themselves say when an engine acts, and so, who looks.
+		timing = owner in (wrapper.Engine, wrapper.PeriodicEngine, wrapper.DeformableEngine)
+		settable = issubclass(owner, wrapper.Engine) and not timing
 		for member in vars(owner).values():
 			doc = getattr(member, "__doc__", None) or ""
 			if not isinstance(member, property) or ":yattrtype:" not in doc:
@@ -74,8 +82,8 @@ def touching_nothing():
 	for owner, names in listed.items():
 		for name in names.split():
 			found += _parts(vars(getattr(wrapper, owner)).get(name))
-	for name in _OMEGA_READ.split():
-		found.append(vars(wrapper.Omega)[name].fget)
+	for owner, names in ((wrapper.Omega, _OMEGA_READ), (wrapper.Body, _BODY_READ)):
+		found += [_parts(vars(owner).get(name))[0] for name in names.split()]
 	for owner in vars(minieigenHP).values():  # vectors and matrices
 		if isinstance(owner, type):
 			# which all classes share

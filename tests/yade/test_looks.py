@@ -1,13 +1,16 @@
 # GPL v2 or later, see LICENSE.
 """What Python sees and changes of State in a run, in which State lags until somebody looks: as if it never lagged."""
+import shutil
+import subprocess
+
 import numpy as np
 import pytest
 
 from deformable_samples import agitate, elastic, in_main, skewed_mesh, start, state_positions, state_velocities
 from waiting import BackgroundRun, until
 from yade import (
-	Body, DeformableElastMat, DeformableEngine, ForceResetter, FrictMat, NewtonIntegrator, O, PyRunner, State,
-	TranslationEngine, ddem, utils
+	Body, DeformableElastMat, DeformableEngine, Engine, ForceResetter, FrictMat, NewtonIntegrator, O, PeriodicEngine,
+	PyRunner, RadialForceEngine, State, TranslationEngine, ddem, minieigenHP, utils
 )
 
 STEPS = 12
@@ -38,8 +41,11 @@ class Scene:
 		O.materials.append(FrictMat(label="spheres"))
 		self.ball = O.bodies.append(utils.sphere((5, 5, 5), 0.1, material="spheres"))
 		self.drive = TranslationEngine(ids=[int(i) for i in self.top], translationAxis=(0, 1, 0), velocity=-1)
+		# engines of YADE that read State in every step
+		radial = dict(ids=[self.core], axisPt=(0.02, 0.4, 0), axisDir=(0, 0, 1), fNorm=2e4)
+		self.reader, self.other_reader = RadialForceEngine(dead=True, **radial), RadialForceEngine(**radial)
 		runner = PyRunner(command="command()", iterPeriod=1)
-		self.engine = start(*([self.drive, runner] if place == "before" else [self.drive]))
+		self.engine = start(self.reader, *([self.drive, runner] if place == "before" else [self.drive]))
 		O.engines = O.engines + ([runner] if place == "after" else []) + [NewtonIntegrator(damping=0)]
 		self.held = [O.bodies[i].state for i in (self.node, self.core)]
 		agitate(self.block, 5)
@@ -63,6 +69,8 @@ READ = {
 	"displ, rot": lambda s: [state(s).displ(), state(s).rot()],
 	"dict": lambda s: {name: v for name, v in state(s).dict().items() if name in ("vel", "angVel", "mass")},
 	"held": lambda s: [part.pos for part in s.held],
+	"arrays of vectors": lambda s: [np.array(state(s).pos), tuple(state(s).vel), len(state(s).pos), list(state(s).angVel)],
+	"flags": lambda s: [O.bodies[s.core].dynamic, O.bodies[s.core].isStandalone, O.bodies[s.core].mask],
 	"all": lambda s: [b.state.pos for b in O.bodies],
 	"driven": lambda s: [(O.bodies[int(i)].state.pos, O.bodies[int(i)].state.vel) for i in s.top],
 	"driven after bulk": lambda s: [utils.kineticEnergy(), [O.bodies[int(i)].state.vel for i in s.top]],
@@ -101,6 +109,11 @@ WRITTEN = {
 	"forces sometimes": lambda s: O.iter % 3 == 0 and O.forces.addF(s.core, (100, 20, 0)),
 	"permanent force": lambda s: O.iter == 4 and O.forces.setPermF(s.core, (100, 20, 0)),
 	"engine": lambda s: give(s.drive, velocity=-0.1 * O.iter),
+	"a reader wakes": lambda s: O.iter == 4 and give(s.reader, dead=False),
+	"a reader comes": lambda s: O.iter == 4 and give(O, engines=[O.engines[0], s.other_reader, *O.engines[1:]]),
+	"counter of forces": lambda s: [
+		O.forces.addF(s.core, (99, 9, 0)), O.forces.f(s.core, sync=True), give(O.forces, syncCount=0)
+	][:1],
 	"gravity": lambda s: O.iter == 4 and give(s.engine, gravity=(0, -1e5, 0)),
 	"material's modulus": lambda s: O.iter == 4 and give(s.material, bulk=20e9),
 	"body's material": lambda s: O.iter == 4 and give(O.bodies[s.core], material=s.other),
@@ -151,7 +164,7 @@ def test_a_scene_saved_in_a_look_goes_on(tmp_path):
 	O.load(file)
 	in_main("command", lambda: None)
 	O.run(STEPS - O.iter - 1, True)  # YADE counts a step when it has ended
-	assert np.array_equal(O.engines[2].array("nodePosition"), expected)
+	assert np.array_equal(O.engines[3].array("nodePosition"), expected)
 
 
 def test_what_is_not_finite_stops_the_run_with_its_body():
@@ -199,6 +212,88 @@ def test_looks_at_two_engines():
 	assert len(seen) >= 2 * (STEPS - 1) and max(seen) == 0
 
 
+def test_another_state_between_runs():
+	scene = Scene("after")
+	seen = []
+	in_main("command", lambda: seen.append(np.abs(np.array(O.bodies[scene.node].state.pos)[:2] - nodes[5]).max()))
+	nodes = scene.engine.array("nodePosition")
+	O.run(STEPS, True)
+	before = O.bodies[scene.node].state
+	O.bodies[scene.node].state = State()
+	for name in ("se3", "vel", "mass", "refPos", "blockedDOFs"):
+		setattr(O.bodies[scene.node].state, name, getattr(before, name))
+	O.run(STEPS, True)
+	assert len(seen) > 2 * STEPS - 4 and max(seen) == 0
+
+
+def test_pauses_and_reads_beside_a_run_change_nothing():
+	results = []
+	for pauses in (0, 20):
+		O.reset()
+		scene = Scene("after")
+		in_main("command", lambda: O.bodies[scene.core].state.pos)
+		for _ in range(pauses):
+			reached = O.iter + 10
+			run = BackgroundRun()
+			until(lambda: O.iter >= reached)
+			O.pause()
+			scene.engine.array("nodePosition")  # perhaps while a step is under way
+			_ = O.bodies[scene.core].shape.stress
+			run.pause()
+		assert O.iter < 30_000
+		O.run(30_000 - O.iter, True)
+		results.append(scene.block.positions.copy())
+	assert np.array_equal(*results)
+
+
+@pytest.mark.parametrize("kept", (False, True))
+def test_a_new_engine_after_a_pause_goes_on_from_where_the_old_one_was(kept):
+	block = ddem.append(skewed_mesh(), elastic())
+	engine = start()
+	block.velocity = (3, 0)
+	run = BackgroundRun()
+	until(lambda: O.iter > 300)
+	run.pause()
+	moved = 3 * O.dt * O.iter
+	O.engines = [ForceResetter(), DeformableEngine()]
+	if not kept:
+		del engine
+	assert block.displacements[:, 0] == pytest.approx(np.full(len(block.node_ids), moved), rel=1e-9)
+	now = state_positions(block.node_ids)[:, 0]
+	O.step()
+	assert state_positions(block.node_ids)[:, 0] == pytest.approx(now + 3 * O.dt, rel=1e-9)
+	assert now - block.reference_positions[:, 0] == pytest.approx(np.full(len(now), moved), rel=1e-9)
+
+
+FORKS = """
+import os
+from yade import ddem, utils
+O.materials.append(DeformableElastMat(young=30e9, poisson=0.2, density=2400, label="rock"))
+block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, size=0.002), "rock")
+O.engines = [ForceResetter(), DeformableEngine(), PyRunner(command="fork()", iterPeriod=5)]
+O.dt = ddem.time_step(0.5)
+block.velocity = (1, 0)
+
+def fork():
+	child = os.fork()
+	if not child:
+		box = [O.bodies[i].state.pos[0] for i in block.node_ids[:3]], utils.kineticEnergy()
+		moved = O.bodies[block.node_ids[0]].state.displ()[0]
+		os._exit(0 if abs(moved - O.dt * (O.iter + 1)) < 1e-9 * moved else 1)
+	assert os.waitpid(child, 0)[1] == 0
+	print("forked", flush=True)
+
+O.run(20, True)
+"""
+
+
+def test_a_command_may_fork(tmp_path):
+	script = tmp_path / "forks.py"
+	script.write_text(FORKS)
+	run = subprocess.run([shutil.which("yade"), "-n", "-x", "-j2", script], capture_output=True, text=True)
+	assert run.stdout.count("forked") > 2, run.stdout + run.stderr
+
+
 def test_scenes_and_engines_go_while_state_lags():
 	for _ in range(3):
 		scene = Scene("after")
@@ -222,6 +317,15 @@ def test_functions_that_touch_one_state_are_those_of_state():
 		and DeformableEngine.rotation.fset not in nothing
 	)
 	assert TranslationEngine.velocity.fset in nothing
+	vectors = [
+		part for name, member in vars(minieigenHP.Vector3).items() if name != "__reduce__"
+		for part in looks._parts(member)
+	]
+	assert all(part in nothing for part in vectors if isinstance(part, type(State.displ)))
+	# who looks next: a command that says so must not find that State lags
+	for owner, names in ((Engine, ("dead", )), (PeriodicEngine, ("iterPeriod", "virtPeriod", "realPeriod", "nDo"))):
+		assert not any(vars(owner)[name].fset in nothing for name in names)
+	assert not any(getattr(type(O), name).fset in nothing for name in ("dt", "stopAtIter", "stopAtTime", "engines"))
 	for function in (
 		utils.kineticEnergy, utils.aabbExtrema, type(O).save, type(O).pause, type(O.bodies).append,
 		Body.material.fset

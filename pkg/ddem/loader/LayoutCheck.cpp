@@ -40,11 +40,11 @@ namespace {
 	/// The smallest block that the allocator handed out for any of several objects alive at once. Sizes of two
 	/// classes are comparable only as the allocator rounds them, and it now and then gives the rest of a free chunk
 	/// away with one that is too small to keep: 16 bytes more, by chance of the heap.
-	template <typename Make> std::size_t smallestUsableSize(Make make)
+	template <typename Make> std::size_t smallestUsableSize(int objects, Make make)
 	{
 		std::vector<decltype(make())> alive;
 		std::size_t                   smallest = std::numeric_limits<std::size_t>::max();
-		for (int i = 0; i < 16; i++) {
+		for (int i = 0; i < objects; i++) {
 			alive.push_back(make());
 			smallest = std::min(smallest, usableSize(*alive.back()));
 		}
@@ -52,20 +52,21 @@ namespace {
 	}
 
 	/// Compares the size of class `Class`, called `name` in YADE's factory.
-	template <typename Class> std::string compareSize(const char* name, const Factorable& stock)
+	template <typename Class> std::string compareSize(const char* name)
 	{
-		// the usual case needs no second look
-		if (usableSize(stock) == usableSize(Block(sizeof(Class)))) return "";
-		const std::size_t inYade = smallestUsableSize([name] { return makeStockObject(name); });
-		const std::size_t here   = smallestUsableSize([] { return std::make_unique<Block>(sizeof(Class)); });
-		if (inYade == here) return "";
+		std::size_t inYade = 0, here = 0;
+		for (const int objects : { 4, 16 }) { // the usual case needs no second look
+			inYade = smallestUsableSize(objects, [name] { return makeStockObject(name); });
+			here   = smallestUsableSize(objects, [] { return std::make_unique<Block>(sizeof(Class)); });
+			if (inYade == here) return "";
+		}
 		return std::string("  class ") + name + ": " + std::to_string(inYade) + " bytes in YADE, "
 		        + std::to_string(here) + " in the plugin\n";
 	}
 
 	template <typename Class> std::string compare(const char* name)
 	{
-		return compareSize<Class>(name, *makeStockObject(name));
+		return compareSize<Class>(name);
 	}
 
 	/// Compares the size, then the place of a member, which must be a number or a truth value: Python knows
@@ -73,10 +74,10 @@ namespace {
 	template <typename Class, typename Member, typename Owner>
 	std::string compare(const char* name, const char* attribute, Member Owner::*member, Member value)
 	{
-		const std::unique_ptr<Factorable> stock = makeStockObject(name);
-		const std::string                 sizes = compareSize<Class>(name, *stock);
+		const std::string sizes = compareSize<Class>(name);
 		if (!sizes.empty()) return sizes; // reading a member could then reach beyond the object
-		Class& object = static_cast<Class&>(*stock);
+		const std::unique_ptr<Factorable> stock  = makeStockObject(name);
+		Class&                            object = static_cast<Class&>(*stock);
 		object.pySetAttr(attribute, boost::python::object(value));
 		if (object.*member == value) return "";
 		return std::string("  class ") + name + ": its member " + attribute
@@ -88,45 +89,31 @@ namespace {
 std::string layoutDifferences()
 {
 	// Values differ from the members' defaults, so that a member at the wrong place cannot hold them by accident.
-	//
+	// clang-format off
 	return compare<Shape>("Shape", "highlight", &Shape::highlight, true)
-	        //
 	        + compare<Sphere>("Sphere", "radius", &Sphere::radius, Real(0.3125))
-	        //
 	        + compare<State>("State", "densityScaling", &State::densityScaling, Real(0.3125))
-	        //
 	        + compare<Body>("Body", "timeBorn", &Body::timeBorn, Real(0.3125))
-	        //
 	        + compare<Bound>("Bound", "lastUpdateIter", &Bound::lastUpdateIter, 31)
-	        //
 	        + compare<Aabb>("Aabb")
-	        //
 	        + compare<Material>("Material", "density", &Material::density, Real(0.3125))
-	        //
 	        + compare<FrictMat>("FrictMat", "frictionAngle", &FrictMat::frictionAngle, Real(0.3125))
-	        //
 	        + compare<Interaction>("Interaction", "iterBorn", &Interaction::iterBorn, 31L)
-	        //
 	        + compare<ScGeom6D>("ScGeom6D", "twist", &ScGeom6D::twist, Real(0.3125))
-	        //
-	        + compare<FrictPhys>(
-	                "FrictPhys", "tangensOfFrictionAngle", &FrictPhys::tangensOfFrictionAngle, Real(0.3125))
-	        //
+	        + compare<FrictPhys>("FrictPhys", "tangensOfFrictionAngle", &FrictPhys::tangensOfFrictionAngle, Real(0.3125))
 	        + compare<GlobalEngine>("GlobalEngine", "dead", &GlobalEngine::dead, true)
-	        //
 	        + compare<PartialEngine>("PartialEngine")
-	        //
 	        + compare<PeriodicEngine>("PeriodicEngine", "nDone", &PeriodicEngine::nDone, 31L)
-	        //
-	        + compare<IPhysFunctor>("IPhysFunctor") + compare<LawFunctor>("LawFunctor")
+	        + compare<IPhysFunctor>("IPhysFunctor")
+	        + compare<LawFunctor>("LawFunctor")
 	        + compare<BoundFunctor>("BoundFunctor")
-	        //
 	        + compare<NewtonIntegrator>("NewtonIntegrator", "mask", &NewtonIntegrator::mask, 31)
-	        //
 	        + compare<BodyContainer>("BodyContainer", "enableRedirection", &BodyContainer::enableRedirection, false)
-	        //
-	        + compare<InteractionContainer>("InteractionContainer") + compare<EnergyTracker>("EnergyTracker")
-	        + compare<Cell>("Cell") + compare<Scene>("Scene", "selectedBody", &Scene::selectedBody, 31);
+	        + compare<InteractionContainer>("InteractionContainer")
+	        + compare<EnergyTracker>("EnergyTracker")
+	        + compare<Cell>("Cell")
+	        + compare<Scene>("Scene", "selectedBody", &Scene::selectedBody, 31);
+	// clang-format on
 }
 
 } // namespace yade::ddem
