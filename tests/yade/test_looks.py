@@ -9,8 +9,8 @@ import pytest
 from deformable_samples import agitate, elastic, in_main, skewed_mesh, start, state_positions, state_velocities
 from waiting import BackgroundRun, until
 from yade import (
-	Body, DeformableElastMat, DeformableEngine, Engine, ForceResetter, FrictMat, NewtonIntegrator, O, PeriodicEngine,
-	PyRunner, RadialForceEngine, State, TranslationEngine, ddem, minieigenHP, utils
+	Body, DeformableElastMat, DeformableEngine, Engine, ForceResetter, FrictMat, NewtonIntegrator, O,
+	PeriodicEngine, PyRunner, RadialForceEngine, State, TranslationEngine, ddem, minieigenHP, utils
 )
 
 STEPS = 12
@@ -69,7 +69,12 @@ READ = {
 	"displ, rot": lambda s: [state(s).displ(), state(s).rot()],
 	"dict": lambda s: {name: v for name, v in state(s).dict().items() if name in ("vel", "angVel", "mass")},
 	"held": lambda s: [part.pos for part in s.held],
-	"arrays of vectors": lambda s: [np.array(state(s).pos), tuple(state(s).vel), len(state(s).pos), list(state(s).angVel)],
+	"arrays of vectors": lambda s: [
+		np.array(state(s).pos),
+		tuple(state(s).vel),
+		len(state(s).pos),
+		list(state(s).angVel),
+	],
 	"flags": lambda s: [O.bodies[s.core].dynamic, O.bodies[s.core].isStandalone, O.bodies[s.core].mask],
 	"all": lambda s: [b.state.pos for b in O.bodies],
 	"driven": lambda s: [(O.bodies[int(i)].state.pos, O.bodies[int(i)].state.vel) for i in s.top],
