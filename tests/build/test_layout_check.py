@@ -90,7 +90,7 @@ def test_plugin_compiled_without_a_feature_of_yade_is_refused(run_with_loader):
 		('-DYADE_OPENMP', None, 'class (Scene|EnergyTracker)'),
 		(None, '-DYADE_LIQMIGRATION', 'class State'),
 		(None, '-DYADE_SPH', 'class State'),
-		(None, '-DYADE_DEFORM', 'class State'),
+		(None, '-DYADE_DEFORM', 'class (Thermal)?State'),
 		(None, ['-DYADE_MASK_ARBITRARY', '-DYADE_MASK_ARBITRARY_SIZE=256'], 'class Body'),
 	]
 )
