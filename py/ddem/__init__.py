@@ -13,7 +13,7 @@ Append a mesh of deformable triangles and load it::
 	ddem.run(until=2e-4)
 	print(platens.stress, block.damage.mean())
 
-SI units; tension positive. The package is a library and three houses beside it:
+SI units; tension positive. The package is a library and four houses beside it:
 
 ===================  ============================================================================================
 here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
@@ -22,6 +22,7 @@ here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialp
 :mod:`studies`       what scripts build and run: uniaxial tests, structures, calibration, campaigns
 :mod:`reports`       pages, tables and pictures of finished studies
 :mod:`verification`  cases with a reference each
+:mod:`accuracy`      what accuracy costs in time
 ===================  ============================================================================================
 
 The library imports nothing of the houses, studies nothing of reports. Only :mod:`mesh`, :mod:`materialpoint`,
@@ -36,10 +37,10 @@ from ._lazy import lazy
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
 	"Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation",
-	"EnergyBalance": "energy",
+	"EnergyBalance": "energy", "StepMeter": "meter",
 	"effects": "effect_table",
 	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,
-	"studies": None, "reports": None, "verification": None,
+	"studies": None, "reports": None, "verification": None, "accuracy": None,
 }
 #: shorter names of modules in the houses
 _SHORT = {

@@ -2,12 +2,14 @@
 """Loading a sample: platens that compress it, and runs with a progress bar."""
 import math
 import numbers
+import sys
 import time
 
 import numpy as np
 
 from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngine
 
+from . import meter
 from .block import Block
 
 
@@ -141,7 +143,8 @@ def run(until=None, steps=None, progress=True):
 	"""O.run with a progress bar and checks beforehand; plain O.run works as well. The time step may change on the
 	way (:yref:`DeformableTimeStepper`).
 
-	A run that something else ends, such as O.pause() in a PyRunner, ends here as well.
+	A run that something else ends, such as O.pause() in a PyRunner, ends here as well. With the progress bar a line
+	at the end says what the steps cost: nanoseconds of processor time a particle and step, of all threads together.
 
 	:param until: time to run to [s]; or
 	:param steps: number of steps.
@@ -165,6 +168,7 @@ def run(until=None, steps=None, progress=True):
 	_require_engine()
 	first, piece = O.iter, 1
 	left = lambda: first + steps - O.iter if until is None else math.ceil((until - O.time) / O.dt - 1e-9)
+	busy = time.process_time()
 	with tqdm(total=left(), unit="step", disable=None if progress else True) as bar:
 		while left() > 0:
 			bar.total = O.iter - first + left()
@@ -179,6 +183,8 @@ def run(until=None, steps=None, progress=True):
 			# O.run looks for its end only every 40 ms, so pieces are long: half a second, which is also how
 			# often the bar moves and Ctrl-C is heard
 			piece = max(1, round(piece * min(10, 0.5 / (time.perf_counter() - clock))))
+	if progress and O.iter > first:
+		print(meter.told(O.iter - first, time.process_time() - busy), file=sys.stderr)
 
 
 def _require_engine():

@@ -233,7 +233,7 @@ def test_budget(tmp_path):
 
 def test_second_process_is_refused(tmp_path):
 	with Bench(Counted(), path=tmp_path / "e"):
-		with pytest.raises(RuntimeError, match="in use by another calibration"):
+		with pytest.raises(RuntimeError, match="in use by another run"):
 			Store(tmp_path / "e")
 	Store(tmp_path / "e").close()
 

@@ -60,7 +60,7 @@ class Store:
 		except OSError:
 			self._file.close()
 			raise RuntimeError(
-				f"{path} is in use by another calibration; wait for it, or choose another folder"
+				f"{path} is in use by another run; wait for it, or choose another folder"
 			) from None
 		self._read()
 
@@ -171,6 +171,14 @@ class Bench:
 		self._reused |= jobs.keys() - missing.keys() - self._made
 		known.update(self._run(missing))
 		return [self._point(values, known) for values in points]
+
+	def knows(self, points):
+		"""Whether all of these points have been measured before, so that measuring them takes no time."""
+		return all(
+			self.store.get(fingerprint(self.settings, values, case))
+			for values in points
+			for case in self.cases
+		)
 
 	def effects(self, values):
 		"""What the scene of a point simulated, in the first case that says so; empty where none does."""

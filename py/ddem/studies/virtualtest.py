@@ -12,10 +12,8 @@ In a scene of one's own::
 or each in a YADE of its own, several at the same time, with :class:`SeparateYade`. SI units.
 """
 import dataclasses
-import json
 import math
 import os
-import tempfile
 
 from .. import packing
 from . import processes
@@ -26,7 +24,7 @@ ENERGY_ERROR = 0.05  #: an evaluation whose energy book is off by more is no mea
 RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "virtualtest_run.py")
 
 _RIGID = ("radii", "fails", "held", "viscosity", "wall_factor", "convention")  # settings that only this model has
-_DEFORMABLE = ("size", "mesh", "rotation")
+_DEFORMABLE = ("size", "mesh", "rotation", "flow_interval")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,6 +51,7 @@ class Setup:
 	size: float = None  # of the triangles' mesh [m]
 	mesh: str = "unstructured"  # its pattern
 	rotation: str = "cosserat"  # treatment of the triangles' rotation
+	flow_interval: int = 1  # steps from one solution of flow to the next
 
 	def __post_init__(self):
 		own = "size" if self.model == "deformable" else "wall_factor"
@@ -258,7 +257,7 @@ def _deformable(setup, values, seed, velocity, _):
 		ForceResetter(),
 		*platens.engines,
 		DeformableTimeStepper(safety=setup.safety),
-		DeformableEngine(rotation=setup.rotation),
+		DeformableEngine(rotation=setup.rotation, flowInterval=setup.flow_interval),
 	]
 	return platens, O.engines[-1].criticalTimeStep()
 
@@ -278,7 +277,7 @@ class SeparateYade:
 
 	def __init__(self, setup, fixed=None, cache=None, yade=None):
 		self.setup, self.fixed, self.cache = setup, dict(fixed or {}), cache
-		self._processes = processes.YadeProcesses(yade)
+		self._requests = processes.Requests(RUNNER, yade)
 
 	def settings(self):
 		"""What a result depends on beside the tuned parameters, as plain data:
@@ -289,54 +288,29 @@ class SeparateYade:
 		return {**self.setup.plain(), "fixed": self.fixed, "yade": config.version, "plugin": plugin()}
 
 	def __call__(self, values, case):
-		with tempfile.TemporaryDirectory(prefix="ddem-") as folder:
-			paths = [os.path.join(folder, name) for name in ("request.json", "answer.json", "log.txt")]
-			request, answer, log = paths
-			with open(request, "w") as file:
-				json.dump(
-					{
-						"setup": dataclasses.asdict(self.setup),
-						"values": {**self.fixed, **values},
-						"case": case,
-						"cache": self.cache,
-					},
-					file,
-				)
-			try:
-				code = self._processes.run(RUNNER, [request, answer], log)
-			except processes.Stopped as error:
-				raise EvaluationError(str(error)) from None
-			if os.path.exists(answer):
-				with open(answer) as file:
-					found = json.load(file)
-				if found["error"] is None:
-					return found["measured"]
-				raise EvaluationError(found["error"])
-			raise EvaluationError(
-				f"YADE {processes.ending(code)} without a result; its last lines: {processes.tail(log)}"
-			)
+		return self._requests.ask(
+			{
+				"setup": dataclasses.asdict(self.setup),
+				"values": {**self.fixed, **values},
+				"case": case,
+				"cache": self.cache,
+			}
+		)
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
-		self._processes.stop()
+		self._requests.stop()
 
 
 def answer(request, path):
-	"""What the YADE of an evaluation does: read the request, perform the test, and write measures or an error.
-	Called by virtualtest_run.py."""
-	with open(request) as file:
-		asked = json.load(file)
-	setup = asked["setup"]
-	setup["radii"] = setup["radii"] and tuple(setup["radii"])
-	found = {"measured": None, "error": None}
-	try:
+	"""What the YADE of an evaluation does: perform the test of a request, and write measures or an error. Called by
+	virtualtest_run.py."""
+
+	def measure(asked):
+		setup = asked["setup"]
+		setup["radii"] = setup["radii"] and tuple(setup["radii"])
 		measured = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
 		from ..effect_table import effects
-		found["measured"] = {**measured, EFFECTS: effects().rows()}
-	except EvaluationError as error:
-		found["error"] = str(error)
-	except Exception as error:
-		found["error"] = f"{type(error).__name__}: {error}"
-	with open(path + ".unfinished", "w") as file:
-		json.dump(found, file)
-	os.replace(path + ".unfinished", path)
+		return {**measured, EFFECTS: effects().rows()}
+
+	processes.answer(request, path, measure)

@@ -1,0 +1,14 @@
+# GPL v2 or later, see LICENSE.
+"""What accuracy costs in time: ladders of settings, run, compared and told.
+
+===================  ============================================================================================
+:mod:`ladders`       the data: scenes, settings, quantities
+:mod:`study`         runs ladders in one folder, within a budget, to a target; :mod:`rungs`: one setting of them
+:mod:`points`        errors, costs and the front; :mod:`convergence`: their arithmetic
+:mod:`sentences`     what the points say; :mod:`figures`, :mod:`page`: what they look like
+===================  ============================================================================================
+"""
+from .._lazy import lazy
+
+_MODULES = ("convergence", "figures", "ladders", "page", "points", "rungs", "sentences", "study")
+__getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

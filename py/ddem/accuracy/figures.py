@@ -1,0 +1,138 @@
+# GPL v2 or later, see LICENSE.
+"""Pictures of what accuracy costs. Needs no YADE."""
+import math
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.ticker import FuncFormatter, NullLocator
+
+from .. import plots
+from . import convergence, sentences
+
+_MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
+
+
+def _drawn(points):
+	return [p for p in points if not p.failed and p.error > 0 and math.isfinite(p.error) and p.cpu_s > 0]
+
+
+def _mantissa(value):
+	return round(value / 10**math.floor(math.log10(value) + 1e-9))
+
+
+def _axes(ax):
+	ax.set_xscale("log")
+	ax.set_yscale("log")
+	if ax.get_ylim()[0] > 2e-5:  # else powers of ten read better
+		ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+	ax.set_xlabel("processor time of the steps [s]")
+	ax.set_ylabel("relative error [-]")
+
+
+def work_precision(points, width=plots.COLUMN):
+	"""Errors of one ladder against core-seconds: a line a quantity, a point a rung, ringed where it is on the
+	front; ranges of seeds as bars, slopes in the legend; the energy book in axes of its own.
+	None where nothing can be drawn."""
+	groups = [group for group in map(_drawn, sentences.grouped(points).values()) if group]
+	books = [group for group in groups if group[0].of == "energy book"]
+	parts = [part for part in ([group for group in groups if group not in books], books) if part]
+	if not parts:
+		return None
+	with rc_context(plots.STYLE):
+		figure = plots.figure(width, (0.9 if len(parts) < 2 else 1.15) * width)
+		heights = [3, 1.4] if len(parts) > 1 else [1]
+		grid = figure.subplots(len(parts), 1, sharex=True, squeeze=False, height_ratios=heights)
+		number = 0
+		for ax, part in zip(grid[:, 0], parts):
+			for group in part:
+				_line(ax, group, number)
+				number += 1
+			for place, p in enumerate(part[0]):  # one above, one below, so that neighbours keep apart
+				above = place % 2
+				ax.annotate(
+					p.rung, (p.cpu_s, p.error), textcoords="offset points",
+					xytext=(0, 7 if above else -11), ha="center",
+					fontsize=6, color="#555555"
+				)
+			_axes(ax)
+			ax.margins(x=0.12, y=0.2)
+			if ax is not grid[-1, 0]:
+				ax.set_xlabel("")
+		figure.legend(loc="outside upper center", ncols=1)
+	return figure
+
+
+def _line(ax, group, number):
+	x, y = np.array([p.cpu_s for p in group]), np.array([p.error for p in group])
+	colour = plots.COLOURS[number % len(plots.COLOURS)]
+	_, slope = convergence.power_law(x, y)
+	name = group[0].quantity + (f", slope {slope:.2g}" if len(group) > 2 and math.isfinite(slope) else "")
+	ax.plot(x, y, marker=_MARKS[number % len(_MARKS)], markersize=3.5, color=colour, label=name)
+	front = [p for p in group if p.pareto]
+	ax.plot(
+		[p.cpu_s for p in front], [p.error for p in front], "o", markersize=7, fillstyle="none", color=colour,
+		markeredgewidth=0.6
+	)
+	for p in group:
+		seeds = [error for error in p.errors if error > 0]
+		if len(seeds) > 1:
+			ax.plot([p.cpu_s] * 2, [min(seeds), max(seeds)], color=colour, linewidth=0.6, alpha=0.6)
+		if p.cpu_range and p.cpu_range[1] > p.cpu_range[0]:
+			ax.plot(p.cpu_range, [p.error] * 2, color=colour, linewidth=0.6, alpha=0.6)
+
+
+def two_errors(points, width=plots.COLUMN):
+	"""Both errors of fracture over the size, and where they cross. None where there are fewer than three sizes."""
+	h, discretisation, scatter = sentences.two_errors(points)
+	if not h:
+		return None
+	with rc_context(plots.STYLE):
+		figure = plots.figure(width, 0.75 * width)
+		ax = figure.add_subplot()
+		sizes = 1e3 * np.array(h)
+		ax.loglog(sizes, discretisation, "o-", markersize=3.5, label="of discretisation: h against h/2")
+		ax.loglog(sizes, scatter, "s-", markersize=3.5, label="of samples: standard deviation of seeds")
+		found = sentences.recommended(points)
+		if found:
+			ax.axvline(1e3 * found[0], color="#888888", linewidth=0.6, linestyle="--")
+			ax.annotate(
+				f"{1e3 * found[0]:.2g} mm", (1e3 * found[0], ax.get_ylim()[0]),
+				textcoords="offset points", xytext=(3, 4),
+				fontsize=7
+			)
+		ax.set_xlabel("size [mm]")
+		ax.set_ylabel(f"relative error of the {points[0].quantity} [-]")
+		per_cent = FuncFormatter(lambda value, _: f"{100 * value:g} %")
+		ax.yaxis.set_major_formatter(per_cent)
+		ax.yaxis.set_minor_formatter(
+			FuncFormatter(lambda value, _: f"{100 * value:g} %" if _mantissa(value) in (2, 5) else "")
+		)
+		ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
+		ax.xaxis.set_minor_locator(NullLocator())
+		ax.legend()
+	return figure
+
+
+def summary(points, width=plots.PAGE):
+	"""The fronts of all ladders that refine, a line each. None where there is none."""
+	groups = [
+		[p for p in _drawn(group) if p.pareto]
+		for group in sentences.grouped(points).values()
+		if group[0].kind in sentences.REFINED and group[0].of != "energy book"
+	]
+	groups = [group for group in groups if len(group) > 1]
+	if not groups:
+		return None
+	with rc_context(plots.STYLE):
+		figure = plots.figure(width, 0.5 * width)
+		ax = figure.add_subplot()
+		for number, group in enumerate(groups):
+			ax.plot(
+				[p.cpu_s for p in group], [p.error for p in group],
+				marker=_MARKS[number // len(plots.COLOURS)],
+				markersize=3.5, color=plots.COLOURS[number % len(plots.COLOURS)],
+				label=f"{group[0].quantity} ({group[0].ladder})"
+			)
+		_axes(ax)
+		figure.legend(loc="outside right upper")
+	return figure

@@ -1,0 +1,146 @@
+# GPL v2 or later, see LICENSE.
+"""Runs ladders: what has been run is kept, a budget is kept to, and a wanted error is predicted before it is run."""
+import math
+import os
+import platform
+import time
+
+from yade import config
+
+from ..studies.commandline import plugin
+from ..studies.evaluations import Bench
+from . import convergence, points, rungs
+from .ladders import Ladder, label
+
+STORE = "rungs.jsonl"  #: in the folder of a study
+_GROWTH = 8.0  #: of the cost from rung to rung, where no two of a ladder have been run
+
+
+class Study:
+	"""Ladders, run in one folder. What is there from this machine and this plugin is not run again.
+
+	:param ladders: list of :class:`ladders.Ladder`
+	:param folder: where results are kept
+	:param threads: OpenMP threads of every rung
+	:param jobs: rungs at the same time; more than one disturb each other's time
+	:param budget: [s]; a rung that would end later, by what cheaper ones took, is not started. None: no limit
+	:param report: called with a line of text for every rung
+	"""
+
+	def __init__(self, ladders, folder, threads=1, jobs=1, budget=None, report=lambda text: None, evaluate=None):
+		os.makedirs(folder, exist_ok=True)
+		self.ladders, self.budget, self.report = list(ladders), budget, report
+		self.machine = f"{platform.node()}, {processor()}"
+		settings = {"yade": config.version, "plugin": plugin(), "machine": self.machine, "threads": threads}
+		evaluate = evaluate or rungs.SeparateRung(threads)
+		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE), jobs=jobs)
+		self.outcomes = {}  # (ladder's name, label of the rung) -> list of outcomes, one a seed
+		self.predictions = []  # of Prediction
+		self._began = time.perf_counter()
+
+	def run(self, target=None):
+		"""Run all rungs that fit the budget, cheap ones first, and return all points.
+
+		:param target: relative error; then ladders whose errors fall with a power of what they refine are
+			refined to it, where the budget has room: predicted before, measured after
+		"""
+		with self._make() as self._bench:
+			for place in range(max(len(ladder.rungs) for ladder in self.ladders)):
+				for ladder in self.ladders:
+					if place < len(ladder.rungs):
+						self._rung(ladder, place)
+			if target is not None:
+				self.ladders = [self._refined(ladder, target) for ladder in self.ladders]
+		return [point for ladder in self.ladders for point in self.points(ladder)]
+
+	def points(self, ladder):
+		"""What a ladder has given so far."""
+		outcomes = [self.outcomes[ladder.name, place] for place in range(len(ladder.rungs))]
+		return points.of_ladder(ladder, outcomes, rungs.scene_name(ladder.scene))
+
+	@property
+	def left(self):
+		"""Of the budget [s]."""
+		return math.inf if self.budget is None else self.budget - (time.perf_counter() - self._began)
+
+	def _rung(self, ladder, place):
+		seeds = [{"seed": seed} for seed in ladder.seeds] or [{}]
+		settings = [{**ladder.settings(ladder.rungs[place]), **seed} for seed in seeds]
+		expected = self._expected(ladder, place) * len(seeds)
+		self._bench.cases = [{"scene": rungs.scene_name(ladder.scene)}]
+		if expected > self.left and not self._bench.knows(settings):
+			left = max(0.0, self.left)
+			text = (
+				f"{points.NOT_RUN}it would take about {expected:.0f} s of a budget of which "
+				f"{left:.0f} s are left"
+			)
+			self.outcomes[ladder.name, place] = [text] * len(seeds)
+		else:
+			found = self._bench.measure(settings)
+			self.outcomes[ladder.name, place] = [p.measured if p.error is None else p.error for p in found]
+		self.report(f"{ladder.name}: {label(ladder.rungs[place])}: {self._told(ladder, place)}")
+
+	def _expected(self, ladder, place):
+		"""Wall time of a rung with one seed by those before it [s]."""
+		walls = [self.outcomes[ladder.name, before][0] for before in range(place)]
+		walls = [one["wall_s"] for one in walls if isinstance(one, dict)]
+		if not walls:
+			return 0.0
+		return walls[-1] * (max(1.0, walls[-1] / walls[-2]) if len(walls) > 1 else _GROWTH)
+
+	def _told(self, ladder, place):
+		outcome = self.outcomes[ladder.name, place][0]
+		if isinstance(outcome, str):
+			return outcome
+		return (
+			f"{outcome['cpu_s']:.3g} core-seconds, {outcome['particles']:.0f} particles, "
+			f"{outcome['ns_per_particle_step']:.0f} ns a particle-step"
+		)
+
+	def _refined(self, ladder, target):
+		"""The ladder with a rung that is to reach the target, which is run."""
+		if not ladder.refined or any(isinstance(rung[ladder.refined], (tuple, list)) for rung in ladder.rungs):
+			return ladder
+		predicted = predict([p for p in self.points(ladder) if p.quantity == ladder.quantities[0].name], target)
+		if predicted is None or predicted.cpu_s * max(1, len(ladder.seeds)) > self.left:
+			return ladder
+		more = Ladder(
+			ladder.name, ladder.kind, ladder.scene,
+			(*ladder.rungs, {**ladder.rungs[-1], ladder.refined: predicted.step}),
+			ladder.quantities, ladder.base, ladder.refined, ladder.seeds, ladder.slow
+		)
+		self._rung(more, len(more.rungs) - 1)
+		self.predictions.append((more, predicted, self.points(more)[len(more.rungs) - 1]))
+		return more
+
+
+class Prediction:
+	"""What a rung that nobody has run will be."""
+
+	def __init__(self, step, error, cpu_s, order):
+		self.step, self.error, self.cpu_s, self.order = step, error, cpu_s, order
+
+
+def predict(found, target):
+	"""The coarsest step that reaches a target error, and its cost, by the power laws of the points of one quantity;
+	None where errors do not fall, or a point is good enough already."""
+	good = [p for p in found if not p.failed and p.step is not None and p.error > 0 and math.isfinite(p.error)]
+	if len(good) < 2 or min(p.error for p in good) <= target:
+		return None
+	finest = sorted(good, key=lambda p: p.step)[:2]
+	_, order = convergence.power_law([p.step for p in finest], [p.error for p in finest])
+	_, growth = convergence.power_law([p.step for p in finest], [p.cpu_s for p in finest])
+	if not (order > 0.3 and growth < 0):
+		return None
+	best = finest[0]
+	step = best.step * (target / best.error)**(1 / order)
+	return Prediction(step, target, best.cpu_s * (step / best.step)**growth, order)
+
+
+def processor():
+	"""Name of the processor."""
+	try:
+		with open("/proc/cpuinfo") as file:
+			return next(line.split(":", 1)[1].strip() for line in file if line.startswith("model name"))
+	except (OSError, StopIteration):
+		return platform.processor() or platform.machine()

@@ -1,0 +1,158 @@
+# GPL v2 or later, see LICENSE.
+"""Points and sentences of ladders whose errors follow a known law."""
+import json
+import math
+
+import pytest
+
+from ddem.accuracy import figures, points, sentences
+from ddem.accuracy.ladders import Ladder, Quantity, each, find, label
+
+SIZES = (0.008, 0.004, 0.002, 0.001)
+DEFLECTION = Quantity("deflection", "displacement", "m")
+STRENGTH = Quantity("strength", "UCS", "Pa", "ucs")
+
+
+def scene(size):
+	"""Stands for a function; never called."""
+
+
+def cost(seconds, size=0.001, **values):
+	unknowns = 1 / size**2
+	return {
+		**{f"{kind}:{name}": number for name, of in values.items() for kind, number in of.items()},
+		"cpu_s": seconds,
+		"wall_s": seconds,
+		"ns_per_particle_step": 20.0,
+		"memory_MB": 5.0,
+		"steps": 1000,
+		"particles": unknowns / 2,
+		"unknowns": unknowns,
+		"dt_s": 1e-7,
+		"threads": 1,
+	}
+
+
+def second_order(size, exact=3.0, known=True):
+	"""What a scene gives whose error is (size/mm)² per cent, and whose cost grows with size^-3."""
+	error = 0.01 * (1e3 * size)**2
+	entry = {"value": exact * (1 - error)}
+	if known:
+		entry.update(reference=exact, error=error)
+	return cost(1e-9 * size**-3, size, deflection=entry)
+
+
+def ladder(quantity=DEFLECTION, **more):
+	return Ladder("beam", "mesh size", scene, each("size", *SIZES), [quantity], refined="size", **more)
+
+
+def test_errors_costs_and_front_of_a_known_law():
+	found = points.of_ladder(ladder(), [[second_order(size)] for size in SIZES], "scene")
+	assert [p.error for p in found] == pytest.approx([0.64, 0.16, 0.04, 0.01])
+	assert all(p.pareto for p in found)
+	assert found[-1].cpu_s == pytest.approx(1) and found[-1].step == 0.001
+	row = found[-1].plain()
+	assert row["digits_of_accuracy"] == pytest.approx(2) and row["digits_of_efficacy"] == pytest.approx(2)
+	assert row["digits_of_size"] == pytest.approx(6)
+	json.dumps(row, allow_nan=False)
+	keys = (
+		"case quantity rung settings error reference reference_error wall_s cpu_s ns_per_particle_step "
+		"memory_MB pareto"
+	)
+	assert set(keys.split()) <= set(row)
+	assert sentences.prices(found) == "5 % in deflection costs 0.12 s (2 mm); 1 % costs 1 s (1 mm)."
+
+
+def test_without_a_reference_the_limit_is_richardson_s():
+	found = points.of_ladder(ladder(), [[second_order(size, known=False)] for size in SIZES], "scene")
+	assert [p.error for p in found] == pytest.approx([0.64, 0.16, 0.04, 0.01], rel=1e-6)
+	assert found[0].reference == pytest.approx(3) and "observed order 2" in found[0].source
+	assert found[0].reference_error == pytest.approx(1.25 * 0.01, rel=1e-6)
+
+
+def test_what_costs_more_and_is_no_closer_is_not_on_the_front():
+	outcomes = [[second_order(size)] for size in SIZES]
+	outcomes[2][0]["cpu_s"] = 5.0
+	found = points.of_ladder(ladder(), outcomes, "scene")
+	assert [p.pareto for p in found] == [True, True, False, True]
+	assert sentences.never_worth(found) == "Never worth it here: 2 mm (beam)."
+
+
+def test_failures_are_listed():
+	outcomes = [[second_order(size)] for size in SIZES]
+	outcomes[1] = ["the run blew up"]
+	found = points.of_ladder(ladder(), outcomes, "scene")
+	assert math.isnan(found[1].error) and not found[1].pareto and found[1].plain()["error"] is None
+	assert sentences.failures(found) == ["beam, 4 mm: the run blew up"]
+	found = points.of_ladder(ladder(STRENGTH), [[second_order(size)] for size in SIZES], "scene")
+	assert found[0].failed == "the scene gives no 'ucs', but deflection"
+
+
+def samples(size, scatter):
+	"""Three seeds of a strength that is 1 % too small per mm and scatters."""
+	return [cost(1e-9 * size**-3, size, ucs={"value": 100.0 * (1 - 10 * size + scatter * t)}) for t in (-1, 0, 1)]
+
+
+def test_two_errors_of_fracture_and_where_they_cross():
+	found = points.of_ladder(ladder(STRENGTH, seeds=(1, 2, 3)), [samples(size, 0.02) for size in SIZES], "scene")
+	assert found[0].scatter == pytest.approx(0.02 / 0.92)
+	assert len(found[0].errors) == 3 and found[0].source.startswith("Richardson's limit")
+	h, discretisation, scatter = sentences.two_errors(found)
+	assert h == list(SIZES[:-1]) and discretisation == pytest.approx([0.04 / 0.96, 0.02 / 0.98, 0.01 / 0.99])
+	assert scatter == pytest.approx([0.02 / 0.92, 0.02 / 0.96, 0.02 / 0.98])
+	size, error = sentences.recommended(found)
+	assert size == pytest.approx(0.0041, rel=0.05)  # where half of it, 5 h, is 2 %
+	assert error == pytest.approx(0.0207, rel=0.02)
+	assert sentences.hidden(found).startswith(
+		"Below 2.1 % in strength the scatter of samples hides the mesh: 4.1 mm"
+	)
+	calm = points.of_ladder(ladder(STRENGTH, seeds=(1, 2, 3)), [samples(size, 1e-6) for size in SIZES], "scene")
+	assert sentences.recommended(calm) is None and "the mesh counts at every size" in sentences.hidden(calm)
+
+
+def test_other_settings_are_compared_with_the_last():
+	rungs = each("rotation", "none", "cosserat")
+	given = Ladder("turn", "rotation treatment", scene, rungs, [STRENGTH])
+	found = points.of_ladder(given, [[cost(1, ucs={"value": 99.0})], [cost(2, ucs={"value": 100.0})]], "scene")
+	assert found[0].error == pytest.approx(0.01) and math.isnan(found[1].error)
+	assert sentences.changes(found) == "Against cosserat: none changes strength by -1 % and costs 0.5 times."
+	rate = Ladder("rate", "loading rate", scene, each("velocity", 2.0, 1.0), [STRENGTH])
+	found = points.of_ladder(rate, [[cost(1, ucs={"value": 110.0})], [cost(2, ucs={"value": 99.0})]], "scene")
+	assert (
+		sentences.slow_enough(found)
+		== "Loading: velocity 2 to velocity 1 moves strength by -10 % and costs 2 times."
+	)
+
+
+def test_pictures_are_drawn_where_there_is_something():
+	found = points.of_ladder(ladder(STRENGTH, seeds=(1, 2, 3)), [samples(size, 0.02) for size in SIZES], "scene")
+	for figure in (figures.work_precision(found), figures.two_errors(found), figures.summary(found)):
+		assert figure.axes[0].lines
+	failed = points.of_ladder(ladder(), [["no"]] * 4, "scene")
+	assert figures.work_precision(failed) is figures.two_errors(failed) is figures.summary(failed) is None
+
+
+@pytest.mark.parametrize(
+	"wrong, says", (
+		({"kind": "colour"}, "kind 'colour' is unknown"), ({"rungs": ()}, "needs rungs"),
+		({"refined": "h"}, "setting 'h'"),
+		({"rungs": ({"size": 1.0}, {"size": 1.0})}, "same rung twice"),
+		({"quantities": [Quantity("x", "taste")]}, "kind 'taste' is unknown"),
+	)
+)
+def test_bad_ladders_are_refused(wrong, says):
+	with pytest.raises(ValueError, match=says):
+		Ladder(
+			**{
+				"name": "n", "kind": "mesh size", "scene": scene, "rungs": each("size", 1.0),
+				"quantities": [DEFLECTION], **wrong
+			}
+		)
+
+
+def test_ladders_are_found_by_name_and_scene():
+	assert [found.name for found in find("kirsch")] == ["kirsch"]
+	assert len(find("ucs")) > 4
+	with pytest.raises(ValueError, match="no ladder 'beem'; there are cantilever"):
+		find("beem")
+	assert label({"size": 0.005, "values": {"equationOfState": False}}) == "5 mm, equationOfState off"

@@ -1,0 +1,88 @@
+# GPL v2 or later, see LICENSE.
+"""What counts as cost: the steps that YADE makes, however they are asked for."""
+import re
+import time
+
+import pytest
+
+from deformable_samples import elastic, skewed_mesh, start
+from yade import O, PyRunner, ddem, utils
+from yade.ddem.meter import StepMeter, particles, unknowns
+
+
+def test_steps_count_however_they_are_run():
+	block = ddem.append(skewed_mesh(), elastic())
+	start()
+	count = len(block.triangle_ids)
+	methods = O.run, O.step, O.wait
+	with StepMeter() as meter:
+		O.run(20, True)
+		O.step()
+		O.run(10)
+		O.wait()
+		ddem.run(steps=5, progress=False)
+	assert meter.steps == O.iter == 36 and meter.particle_steps == 36 * count
+	assert meter.particles == count and meter.unknowns == 3 * count + 2 * len(block.node_ids) and meter.dt == O.dt
+	assert 0 < meter.ns_per_particle_step
+	assert (O.run, O.step, O.wait) == methods
+	O.run(3, True)
+	assert meter.steps == 36
+
+
+def test_what_lies_between_runs_does_not_count():
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	with StepMeter() as meter:
+		O.run(20, True)
+		before = meter.cpu_s
+		began = time.process_time()
+		sum(i * i for i in range(200_000))
+		assert time.process_time() > began
+		assert meter.cpu_s == before
+
+
+def test_a_run_that_fails_counts_and_leaves_no_trace():
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	run = O.run
+	with pytest.raises(KeyError):
+		with StepMeter() as meter:
+			O.run(7, True)
+			raise KeyError
+	assert meter.steps == 7 and O.run == run
+
+
+def test_spheres_are_particles_where_there_are_no_triangles():
+	O.bodies.append([utils.sphere((i, 0, 0), 0.1) for i in range(3)])
+	assert particles() == 3 and unknowns() == 18
+
+
+def test_engines_that_record_do_not_count():
+	"""Here all the time is theirs."""
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	recorder = PyRunner(command="sum(range(20000))", iterPeriod=1, label="recorder")
+	O.engines = O.engines + [recorder]
+	O.timingEnabled = True
+	with StepMeter() as all_of_it:
+		O.run(50, True)
+	with StepMeter(apart=["recorder"]) as without:
+		O.run(50, True)
+	O.timingEnabled = False
+	assert without.cpu_s < 0.5 * all_of_it.cpu_s
+
+
+def test_a_run_says_what_it_cost(capfd):
+	block = ddem.append(skewed_mesh(), elastic())
+	start()
+	ddem.run(steps=20)
+	said = capfd.readouterr().err.splitlines()[-1]
+	assert re.fullmatch(
+		(
+			rf"20 steps of {len(block.triangle_ids)} triangles: [\d.]+ ns a triangle-step, [\d.e-]+ s of "
+			rf"processor time"
+		),
+		said,
+	)
+	ddem.run(steps=20, progress=False)
+	assert not capfd.readouterr().err
