@@ -37,7 +37,7 @@ from ._lazy import lazy
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
 	"Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation",
-	"EnergyBalance": "energy", "StepMeter": "meter",
+	"EnergyBalance": "energy", "StepMeter": "meter", "estimate": "accuracy.estimate",
 	"effects": "effect_table",
 	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,
 	"studies": None, "reports": None, "verification": None, "accuracy": None,

@@ -6,9 +6,10 @@
 :mod:`study`         runs ladders in one folder, within a budget, to a target; :mod:`rungs`: one setting of them
 :mod:`points`        errors, costs and the front; :mod:`convergence`: their arithmetic
 :mod:`sentences`     what the points say; :mod:`figures`, :mod:`page`: what they look like
+:mod:`estimate`      what a run will take, before it is run
 ===================  ============================================================================================
 """
 from .._lazy import lazy
 
-_MODULES = ("convergence", "figures", "ladders", "page", "points", "rungs", "sentences", "study")
+_MODULES = ("convergence", "estimate", "figures", "ladders", "page", "points", "rungs", "sentences", "study")
 __getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))
