@@ -124,6 +124,14 @@ def test_other_settings_are_compared_with_the_last():
 	)
 
 
+def test_threads_are_told_by_the_clock():
+	given = Ladder("threads", "threads", scene, each("threads", 1, 2), [STRENGTH])
+	one, two = cost(4.0, ucs={"value": 7.0}), {**cost(4.4, ucs={"value": 7.0}), "wall_s": 2.4}
+	found = points.of_ladder(given, [[one], [two]], "scene")
+	said = "threads 2 take 0.6 of its time by the clock and 1.1 of its processor time, for the same strength"
+	assert sentences.threads(found) == f"Against threads 1: {said}."
+
+
 def test_pictures_are_drawn_where_there_is_something():
 	found = points.of_ladder(ladder(STRENGTH, seeds=(1, 2, 3)), [samples(size, 0.02) for size in SIZES], "scene")
 	for figure in (figures.work_precision(found), figures.two_errors(found), figures.summary(found)):

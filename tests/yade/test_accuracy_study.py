@@ -140,7 +140,9 @@ def test_a_scene_of_one_s_own_in_yades_of_their_own(tmp_path):
 		assert answer["steps"] == 100 and answer["error:travel"] < 1e-9 and answer["value:size"] in (0.02, 0.01)
 		assert answer["particle_steps"] == 100 * answer["particles"] and answer["dt_s"] == 1e-7
 		assert answer["unknowns"] > 3 * answer["particles"] and answer["cpu_s"] > 0
-	assert answers[1]["particles"] == 4 * answers[0]["particles"]
+	assert answers[1]["particles"] == 4 * answers[0]["particles"] and answers[0]["threads"] == 1
+	two = rungs.SeparateRung()({"size": 0.02, "threads": 2}, {"scene": f"{file}:stretched"})
+	assert two["threads"] == 2 and two["value:travel"] == answers[0]["value:travel"]
 	with pytest.raises(rungs.EvaluationError, match="AttributeError.*nothing"):
 		rungs.SeparateRung()({"size": 0.02}, {"scene": f"{file}:nothing"})
 

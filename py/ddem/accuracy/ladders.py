@@ -10,12 +10,14 @@ A ladder of one's own is a few lines, in a file that ``accuracy_cost.py --ladder
 		return {"deflection": (found, expected)}      # or the value alone, where nothing exact is known
 
 	LADDERS = [
-		Ladder("my_beam", "mesh size", beam, each("size", 0.02, 0.01, 0.005), [Quantity("deflection",
-		"displacement", "m")]),
+		Ladder(
+			"my_beam", "mesh size", beam, each("size", 0.02, 0.01, 0.005),
+			[Quantity("deflection", "displacement", "m")], refined="size"
+		),
 	]
 
 A scene is a function of its settings, a verification case by its name, whose records count, or :data:`UCS`, the
-specimens of :mod:`studies.virtualtest`.
+specimens of :mod:`studies.virtualtest`. The setting ``threads`` is not the scene's, but that of its YADE.
 """
 from dataclasses import dataclass
 
@@ -198,6 +200,7 @@ LADDERS = (
 		"ucs_rate", "loading rate", UCS, each("velocity", 4.0, 2.0, 1.0, 0.5, 0.25), _STRENGTH, _BLOCK,
 		refined="velocity"
 	),
+	Ladder("ucs_threads", "threads", UCS, each("threads", 1, 2), _STRENGTH, {**_BLOCK, "size": 0.005}),
 	Ladder(
 		"ucs_flow", "flowInterval", UCS, each("flow_interval", 8, 4, 2, 1), _STRENGTH,
 		{**_BLOCK, "values": {"equationOfState": False}}

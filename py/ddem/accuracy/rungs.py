@@ -129,7 +129,9 @@ class SeparateRung:
 		self._requests = processes.Requests(RUNNER, yade, threads)
 
 	def __call__(self, values, case):
-		return self._requests.ask({"scene": case["scene"], "settings": values})
+		settings = dict(values)
+		threads = settings.pop("threads", None)
+		return self._requests.ask({"scene": case["scene"], "settings": settings}, threads)
 
 	def stop(self):
 		"""End what is running, and start nothing more."""

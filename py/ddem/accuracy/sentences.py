@@ -7,6 +7,7 @@ from . import convergence
 _TARGETS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 1e-4, 1e-5)
 _NOTHING = 0.001  #: a setting that changes a quantity by less changes nothing
 REFINED = ("mesh size", "number of particles")
+COMPARED = ("rotation treatment", "law and effects", "flowInterval")  #: kinds whose rungs stand for one another
 
 
 def per_cent(value):
@@ -130,6 +131,21 @@ def changes(points):
 	return f"Against {last.rung}: {'; '.join(told)}."
 
 
+def threads(points):
+	"""What more threads save, by the clock, and whether they change anything."""
+	good = [p for p in points if not p.failed]
+	if len(good) < 2:
+		return ""
+	first, told = good[0], []
+	for point in good[1:]:
+		same = "the same" if point.value == first.value else "another"
+		told.append(
+			f"{point.rung} take {point.cost['wall_s'] / first.cost['wall_s']:.2g} of its time by the clock "
+			f"and {point.cpu_s / first.cpu_s:.2g} of its processor time, for {same} {point.quantity}"
+		)
+	return f"Against {first.rung}: {'; '.join(told)}."
+
+
 def slow_enough(points):
 	"""Whether loading was slow enough: what halving a rate changes, and costs."""
 	good = [p for p in points if not p.failed]
@@ -177,9 +193,8 @@ def all_of(points):
 			told.append(hidden(group))
 		elif kind == "loading rate" and of == "UCS":
 			told.append(slow_enough(group))
-		elif kind in ("rotation treatment", "law and effects", "flowInterval", "threads") and of in (
-			"UCS",
-			"displacement",
-		):
+		elif kind == "threads" and of == "UCS":
+			told.append(threads(group))
+		elif kind in COMPARED and of in ("UCS", "displacement"):
 			told.append(changes(group))
 	return [text for text in (*told, never_worth(points)) if text]

@@ -24,13 +24,15 @@ class YadeProcesses:
 		self.yade = yade or shutil.which(getattr(sys, "yade_argv", ["yade"])[0]) or "yade"
 		self._running, self._lock, self._stopped = set(), threading.Lock(), False
 
-	def run(self, script, arguments, log):
-		"""Run a script, what it prints into the file *log*, and return its exit code when it has ended.
+	def run(self, script, arguments, log, threads=None):
+		"""Run a script, what it prints into the file *log*, and return its exit code when it has ended;
+		*threads* in place of those of all.
 
 		:raises Stopped: :meth:`stop` was called before it was started
 		"""
-		command = [self.yade, "-n", "-x", f"-j{self.threads}", script, *arguments]
-		environment = {**os.environ, "OMP_NUM_THREADS": str(self.threads), "PYTHONDONTWRITEBYTECODE": "1"}
+		threads = threads or self.threads
+		command = [self.yade, "-n", "-x", f"-j{threads}", script, *arguments]
+		environment = {**os.environ, "OMP_NUM_THREADS": str(threads), "PYTHONDONTWRITEBYTECODE": "1"}
 		with open(log, "wb") as file:
 			with self._lock:
 				if self._stopped:
@@ -68,8 +70,8 @@ class Requests:
 	def __init__(self, script, yade=None, threads=1):
 		self.script, self._processes = script, YadeProcesses(yade, threads)
 
-	def ask(self, request):
-		"""What the script measures for a request, both plain data.
+	def ask(self, request, threads=None):
+		"""What the script measures for a request, both plain data; *threads* in place of those of all.
 
 		:raises EvaluationError: it says that it cannot, or ended without a word
 		"""
@@ -80,7 +82,7 @@ class Requests:
 			with open(asked, "w") as file:
 				json.dump(request, file)
 			try:
-				code = self._processes.run(self.script, [asked, told], log)
+				code = self._processes.run(self.script, [asked, told], log, threads)
 			except Stopped as error:
 				raise EvaluationError(str(error)) from None
 			if not os.path.exists(told):
