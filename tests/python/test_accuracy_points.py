@@ -110,6 +110,23 @@ def test_two_errors_of_fracture_and_where_they_cross():
 	assert sentences.recommended(calm) is None and "the mesh counts at every size" in sentences.hidden(calm)
 
 
+def test_names_that_vary_are_found_by_what_stays():
+	angle = Quantity("stress", "stress", "-", "stress, over … turns, root")
+	given = Ladder("disc", "mesh size", scene, each("size", *SIZES), [angle], refined="size")
+	entry = {"value": 0.1, "reference": 0.0, "error": 0.1}
+	outcome = cost(
+		1, **{"stress, over 4.99 turns, mean [-]": {"value": 9.0}, "stress, over 4.99 turns, root [-]": entry}
+	)
+	assert points.of_ladder(given, [[outcome]] * 4, "scene")[0].error == 0.1
+
+
+def test_nothing_is_compared_with_a_setting_that_is_missing():
+	given = Ladder("turn", "rotation treatment", scene, each("rotation", "none", "cosserat"), [STRENGTH])
+	found = points.of_ladder(given, [[cost(1, ucs={"value": 99.0})], ["not run: no time"]], "scene")
+	assert math.isnan(found[0].error) and sentences.changes(found) == "" and found[1].skipped
+	assert sentences.skipped(found) == ["turn, cosserat: not run: no time"] and not sentences.failures(found)
+
+
 def test_other_settings_are_compared_with_the_last():
 	rungs = each("rotation", "none", "cosserat")
 	given = Ladder("turn", "rotation treatment", scene, rungs, [STRENGTH])

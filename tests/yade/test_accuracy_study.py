@@ -88,6 +88,13 @@ def test_a_rung_that_would_break_the_budget_is_not_started(tmp_path):
 	assert told[0] == "beam: 8 mm: 0.00195 core-seconds, 100 particles, 20 ns a particle-step"
 
 
+def test_cheap_rungs_of_all_ladders_come_first(tmp_path):
+	asked = Known()
+	dear = ladder("dear", rungs_=each("size", 0.0008, 0.0004))
+	study.Study([dear, ladder()], str(tmp_path), evaluate=asked).run()
+	assert asked.asked == [0.0008, *SIZES, 0.0004]  # the first of each tells what the next will take
+
+
 def test_failures_do_not_stop_the_others(tmp_path):
 	blown = ladder(rungs_=({"size": 0.008}, {"size": 0.004, "blown": True}, {"size": 0.002}))
 	found = study.Study([blown], str(tmp_path), evaluate=Known()).run()

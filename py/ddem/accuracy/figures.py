@@ -13,7 +13,7 @@ _MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
 def _drawn(points):
-	return [p for p in points if not p.failed and p.error > 0 and math.isfinite(p.error) and p.cpu_s > 0]
+	return [p for p in points if not p.failed and sentences.known(p) > 0 and math.isfinite(p.error) and p.cpu_s > 0]
 
 
 def _mantissa(value):
@@ -31,7 +31,8 @@ def _axes(ax):
 
 def work_precision(points, width=plots.COLUMN):
 	"""Errors of one ladder against core-seconds: a line a quantity, a point a rung, ringed where it is on the
-	front; ranges of seeds as bars, slopes in the legend; the energy book in axes of its own.
+	front; ranges of seeds as bars, slopes in the legend; the energy book in axes of its own. No error is drawn
+	below that of its reference.
 	None where nothing can be drawn."""
 	groups = [group for group in map(_drawn, sentences.grouped(points).values()) if group]
 	books = [group for group in groups if group[0].of == "energy book"]
@@ -50,7 +51,7 @@ def work_precision(points, width=plots.COLUMN):
 			for place, p in enumerate(part[0]):  # one above, one below, so that neighbours keep apart
 				above = place % 2
 				ax.annotate(
-					p.rung, (p.cpu_s, p.error), textcoords="offset points",
+					p.rung, (p.cpu_s, sentences.known(p)), textcoords="offset points",
 					xytext=(0, 7 if above else -11), ha="center",
 					fontsize=6, color="#555555"
 				)
@@ -63,14 +64,15 @@ def work_precision(points, width=plots.COLUMN):
 
 
 def _line(ax, group, number):
-	x, y = np.array([p.cpu_s for p in group]), np.array([p.error for p in group])
+	x, y = np.array([p.cpu_s for p in group]), np.array([sentences.known(p) for p in group])
 	colour = plots.COLOURS[number % len(plots.COLOURS)]
 	_, slope = convergence.power_law(x, y)
 	name = group[0].quantity + (f", slope {slope:.2g}" if len(group) > 2 and math.isfinite(slope) else "")
 	ax.plot(x, y, marker=_MARKS[number % len(_MARKS)], markersize=3.5, color=colour, label=name)
 	front = [p for p in group if p.pareto]
 	ax.plot(
-		[p.cpu_s for p in front], [p.error for p in front], "o", markersize=7, fillstyle="none", color=colour,
+		[p.cpu_s for p in front], [sentences.known(p) for p in front], "o", markersize=7, fillstyle="none",
+		color=colour,
 		markeredgewidth=0.6
 	)
 	for p in group:
@@ -78,7 +80,7 @@ def _line(ax, group, number):
 		if len(seeds) > 1:
 			ax.plot([p.cpu_s] * 2, [min(seeds), max(seeds)], color=colour, linewidth=0.6, alpha=0.6)
 		if p.cpu_range and p.cpu_range[1] > p.cpu_range[0]:
-			ax.plot(p.cpu_range, [p.error] * 2, color=colour, linewidth=0.6, alpha=0.6)
+			ax.plot(p.cpu_range, [sentences.known(p)] * 2, color=colour, linewidth=0.6, alpha=0.6)
 
 
 def two_errors(points, width=plots.COLUMN):

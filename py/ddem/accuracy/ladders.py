@@ -40,7 +40,8 @@ class Quantity:
 	name: str  # for people
 	kind: str  # one of QUANTITIES
 	unit: str = "-"
-	# of a verification case: how its records' quantity begins; else the key of what the scene gives
+	# of a verification case: how its records' quantity begins, "…" for what varies;
+	# else the key of what the scene gives
 	record: str = ""
 	source: str = ""  # of the reference, where the scene does not say
 
@@ -139,7 +140,7 @@ LADDERS = (
 		), refined="size"
 	),
 	Ladder(
-		"kirsch", "mesh size", "kirsch", each("fine", 0.0016, 0.0008, 0.0004), (
+		"kirsch", "mesh size", "kirsch", each("fine", 0.0008, 0.00055, 0.0004), (
 			Quantity("stress at the hole's flank", "stress", "-", "stress along the hole at its flank"),
 			Quantity("displacement", "displacement", "-", "displacement of the nodes, largest error"),
 		), refined="fine"
@@ -166,9 +167,9 @@ LADDERS = (
 				"stress, corotational",
 				"stress",
 				"-",
-				"stress, mean over 5.00 turns, corotational, root",
+				"stress, mean over … corotational, root",
 			),
-			Quantity("stress, cosserat", "stress", "-", "stress, mean over 5.00 turns, cosserat, root"),
+			Quantity("stress, cosserat", "stress", "-", "stress, mean over … cosserat, root"),
 		), refined="size"
 	),
 	Ladder(

@@ -123,9 +123,11 @@ def _measured(ladder, quantity, rung, outcome, scene):
 
 
 def _entry(outcome, key):
-	"""(value, reference, error) of the entry that begins with a key; None where there is none."""
+	"""(value, reference, error) of the entry that begins with a key, in which "…" stands for anything; None where
+	there is none."""
+	begin, *others = key.split("…")
 	for name, value in outcome.items():
-		if name.startswith(f"value:{key}"):
+		if name.startswith(f"value:{begin}") and all(part in name for part in others):
 			rest = name.partition(":")[2]
 			return value, outcome.get(f"reference:{rest}", math.nan), outcome.get(f"error:{rest}")
 	return None
@@ -135,8 +137,8 @@ def _with_errors(ladder, points):
 	"""Errors of quantities that have no reference: against what they tend to,
 	else against the most careful rung."""
 	open_ = [p for p in points if not p.failed and math.isnan(p.error)]
-	if not open_:
-		return points
+	if not open_ or (points[-1].failed and not ladder.refined):
+		return points  # what the others stand against is not there
 	limit, own, source = open_[-1].value, math.nan, f"the ladder's last rung, {open_[-1].rung}"
 	steps = [p.step for p in open_]
 	if ladder.refined and len(set(steps)) > 2:

@@ -116,7 +116,7 @@ def hidden(points):
 def changes(points):
 	"""What the other settings of a ladder change, against its most careful one."""
 	good = [p for p in points if not p.failed]
-	if len(good) < 2:
+	if len(good) < 2 or points[-1].failed:
 		return ""
 	last, told = good[-1], []
 	for point in good[:-1]:

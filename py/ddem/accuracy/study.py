@@ -35,6 +35,7 @@ class Study:
 		evaluate = evaluate or rungs.SeparateRung(threads)
 		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE), jobs=jobs)
 		self.outcomes = {}  # (ladder's name, label of the rung) -> list of outcomes, one a seed
+		self._took = {}  # (ladder's name, number of the rung) -> wall time of all its seeds [s]
 		self.predictions = []  # of Prediction
 		self._began = time.perf_counter()
 
@@ -45,10 +46,13 @@ class Study:
 			refined to it, where the budget has room: predicted before, measured after
 		"""
 		with self._make() as self._bench:
-			for place in range(max(len(ladder.rungs) for ladder in self.ladders)):
-				for ladder in self.ladders:
-					if place < len(ladder.rungs):
-						self._rung(ladder, place)
+			left = {ladder: 0 for ladder in self.ladders}  # the next rung of each
+			while left:
+				ladder = min(left, key=lambda one: self._expected(one, left[one]))
+				self._rung(ladder, left[ladder])
+				left[ladder] += 1
+				if left[ladder] == len(ladder.rungs):
+					del left[ladder]
 			if target is not None:
 				self.ladders = [self._refined(ladder, target) for ladder in self.ladders]
 		return [point for ladder in self.ladders for point in self.points(ladder)]
@@ -66,7 +70,7 @@ class Study:
 	def _rung(self, ladder, place):
 		seeds = [{"seed": seed} for seed in ladder.seeds] or [{}]
 		settings = [{**ladder.settings(ladder.rungs[place]), **seed} for seed in seeds]
-		expected = self._expected(ladder, place) * len(seeds)
+		expected = self._expected(ladder, place)
 		self._bench.cases = [{"scene": rungs.scene_name(ladder.scene)}]
 		if expected > self.left and not self._bench.knows(settings):
 			left = max(0.0, self.left)
@@ -78,15 +82,22 @@ class Study:
 		else:
 			found = self._bench.measure(settings)
 			self.outcomes[ladder.name, place] = [p.measured if p.error is None else p.error for p in found]
+			steps = sum(p.measured["wall_s"] for p in found if p.error is None)
+			# with making the sample
+			self._took[ladder.name, place] = max(steps, sum(p.seconds for p in found))
 		self.report(f"{ladder.name}: {label(ladder.rungs[place])}: {self._told(ladder, place)}")
 
 	def _expected(self, ladder, place):
-		"""Wall time of a rung with one seed by those before it [s]."""
-		walls = [self.outcomes[ladder.name, before][0] for before in range(place)]
-		walls = [one["wall_s"] for one in walls if isinstance(one, dict)]
-		if not walls:
+		"""Wall time of a rung, of all its seeds and with what comes before their steps,
+		by the rungs before it [s]."""
+		took = [
+			self._took[ladder.name, before]
+			for before in range(place)
+			if (ladder.name, before) in self._took
+		]
+		if not took:
 			return 0.0
-		return walls[-1] * (max(1.0, walls[-1] / walls[-2]) if len(walls) > 1 else _GROWTH)
+		return took[-1] * (max(1.0, took[-1] / took[-2]) if len(took) > 1 else _GROWTH)
 
 	def _told(self, ladder, place):
 		outcome = self.outcomes[ladder.name, place][0]
