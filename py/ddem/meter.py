@@ -27,11 +27,16 @@ def unknowns():
 	)
 
 
+def nanoseconds(value):
+	"""As "9.87 ns" or "1234 ns"."""
+	return f"{value:.3g} ns" if value < 100 else f"{value:.0f} ns"
+
+
 def told(steps, cpu_s):
 	"""What so many steps have cost, in a line: "1200 steps of 10070 triangles: 21 ns a triangle-step, 0.25 s of
 	processor time"."""
 	count, kind = particles(), "triangle" if _engines() else "sphere"
-	share = f"{1e9 * cpu_s / (steps * count):.3g} ns a {kind}-step, " if steps and count else ""
+	share = f"{nanoseconds(1e9 * cpu_s / (steps * count))} a {kind}-step, " if steps and count else ""
 	return f"{steps} steps of {count} {kind}s: {share}{cpu_s:.3g} s of processor time"
 
 

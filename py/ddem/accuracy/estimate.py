@@ -41,7 +41,8 @@ class Estimate:
 		between = f"{low:.3g}" if high < 1.05 * low else f"{low:.3g} to {high:.3g}"
 		lines = [
 			f"{self.steps} steps of {self.particles} {self.kind}s: {between} core-seconds "
-			f"({self.ns_now:.3g} ns a {self.kind}-step now, {self.ns_strained:.3g} where all is strained), "
+			f"({meter.nanoseconds(self.ns_now)} a {self.kind}-step now, "
+			f"{meter.nanoseconds(self.ns_strained)} where all is strained), "
 			f"{self.memory_MB:.0f} MB",
 			f"time step {self.dt:.3g} s, {self.dt / self.critical:.2f} of the critical one",
 		]
