@@ -2,6 +2,7 @@
 """What a run will take, before it is run."""
 import math
 import os
+import random
 import tempfile
 from dataclasses import dataclass, field
 
@@ -154,7 +155,6 @@ def _cpu(steps):
 
 def _agitate():
 	"""Random velocities of a tenth of a metre a second, so that nothing rests."""
-	import random
 	draw = random.Random(1)
 	for body in O.bodies:
 		if body and not body.state.blockedDOFs.startswith("xy"):

@@ -62,7 +62,6 @@ class Ladder:
 	base: dict = None  # settings of all rungs
 	refined: str = ""  # setting that tends to zero, in which errors have an order; of a pair its mean counts
 	seeds: tuple = ()  # the scene is run with each, as setting "seed"; its values scatter
-	slow: bool = False  # not among the default ones
 
 	def __post_init__(self):
 		object.__setattr__(self, "rungs", tuple(dict(rung) for rung in self.rungs))

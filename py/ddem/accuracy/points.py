@@ -2,6 +2,7 @@
 """Points of work and precision: what every rung of a ladder cost, and how far off it was. Needs no YADE."""
 import math
 from dataclasses import dataclass, field, replace
+from statistics import fmean, stdev
 
 from . import convergence
 from .ladders import label
@@ -25,7 +26,7 @@ class Point:
 	step: float = None  # what is refined; None where nothing is
 	value: float = math.nan  # mean over seeds
 	scatter: float = None  # standard deviation over seeds, over the mean [-]
-	error: float = math.nan  # of the mean [-]
+	error: float = math.nan  # of the mean; where the scene gives errors, their mean [-]
 	errors: tuple = ()  # of every seed [-]
 	reference: float = math.nan
 	reference_error: float = 0.0  # of the reference itself [-]
@@ -105,19 +106,19 @@ def _measured(ladder, quantity, rung, outcome, scene):
 		names = sorted(name.partition(":")[2] for name in outcome[0] if name.startswith("value:"))
 		return replace(point, failed=f"the scene gives no '{quantity.key}', but {', '.join(names)}")
 	values = [value for value, _, _ in samples]
-	mean = math.fsum(values) / len(values)
-	cost = {name: math.fsum(one[name] for one in outcome) / len(outcome) for name in _AVERAGED}
+	mean = fmean(values)
+	cost = {name: fmean(one[name] for one in outcome) for name in _AVERAGED}
 	cost.update(dt_s=outcome[0]["dt_s"], threads=outcome[0]["threads"])
 	known = [error for _, _, error in samples]
 	point = replace(
-		point, value=mean, scatter=_deviation(values) / abs(mean) if len(values) > 1 and mean else None,
+		point, value=mean, scatter=stdev(values) / abs(mean) if len(values) > 1 and mean else None,
 		cost=cost,
 		cpu_range=(min(one["cpu_s"] for one in outcome), max(one["cpu_s"] for one in outcome))
 	)
 	if None in known:
 		return replace(point, errors=tuple(values))  # values so far: their reference is not known yet
 	return replace(
-		point, error=math.fsum(known) / len(known), errors=tuple(known), reference=samples[0][1],
+		point, error=fmean(known), errors=tuple(known), reference=samples[0][1],
 		source=point.source or "the case's reference"
 	)
 
@@ -170,8 +171,3 @@ def _with_errors(ladder, points):
 def _on_front(points):
 	places = convergence.front([p.cpu_s for p in points], [p.error for p in points])
 	return [replace(point, pareto=place in places) for place, point in enumerate(points)]
-
-
-def _deviation(values):
-	mean = math.fsum(values) / len(values)
-	return math.sqrt(math.fsum((value - mean)**2 for value in values) / (len(values) - 1))

@@ -11,11 +11,6 @@ from ..studies.evaluations import EvaluationError
 from .ladders import UCS
 
 RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rung_run.py")
-#: what a rung says of itself, beside value:…, reference:… and error:… of every quantity
-COSTS = (
-	"cpu_s", "wall_s", "steps", "particle_steps", "particles", "unknowns", "dt_s", "ns_per_particle_step",
-	"memory_MB", "threads"
-)
 
 
 def scene_name(scene):
@@ -29,7 +24,8 @@ def perform(scene, settings):
 	:param scene: as :func:`scene_name` gives it
 	:param settings: of the scene; "seed" among them where it has one
 	:returns: value:NAME, and reference:NAME and error:NAME [-] where there is a reference, of everything that the
-		scene compares, and :data:`COSTS`
+		scene compares; and cpu_s, wall_s [s], steps, particle_steps, particles, unknowns, dt_s [s],
+		ns_per_particle_step, memory_MB, threads
 	"""
 	from yade import O
 

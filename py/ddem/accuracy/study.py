@@ -4,9 +4,11 @@ import math
 import os
 import platform
 import time
+from dataclasses import dataclass
 
 from yade import config
 
+from ..provenance import processor
 from ..studies.commandline import plugin
 from ..studies.evaluations import Bench
 from . import convergence, points, rungs
@@ -34,7 +36,7 @@ class Study:
 		settings = {"yade": config.version, "plugin": plugin(), "machine": self.machine, "threads": threads}
 		evaluate = evaluate or rungs.SeparateRung(threads)
 		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE), jobs=jobs)
-		self.outcomes = {}  # (ladder's name, label of the rung) -> list of outcomes, one a seed
+		self.outcomes = {}  # (ladder's name, number of the rung) -> list of outcomes, one a seed
 		self._took = {}  # (ladder's name, number of the rung) -> wall time of all its seeds [s]
 		self.predictions = []  # of Prediction
 		self._began = time.perf_counter()
@@ -118,18 +120,20 @@ class Study:
 		more = Ladder(
 			ladder.name, ladder.kind, ladder.scene,
 			(*ladder.rungs, {**ladder.rungs[-1], ladder.refined: predicted.step}),
-			ladder.quantities, ladder.base, ladder.refined, ladder.seeds, ladder.slow
+			ladder.quantities, ladder.base, ladder.refined, ladder.seeds
 		)
 		self._rung(more, len(more.rungs) - 1)
 		self.predictions.append((more, predicted, self.points(more)[len(more.rungs) - 1]))
 		return more
 
 
+@dataclass(frozen=True)
 class Prediction:
 	"""What a rung that nobody has run will be."""
-
-	def __init__(self, step, error, cpu_s, order):
-		self.step, self.error, self.cpu_s, self.order = step, error, cpu_s, order
+	step: float  # of what is refined
+	error: float  # [-]
+	cpu_s: float
+	order: float  # observed, of the error in the step [-]
 
 
 def predict(found, target):
@@ -146,12 +150,3 @@ def predict(found, target):
 	best = finest[0]
 	step = best.step * (target / best.error)**(1 / order)
 	return Prediction(step, target, best.cpu_s * (step / best.step)**growth, order)
-
-
-def processor():
-	"""Name of the processor."""
-	try:
-		with open("/proc/cpuinfo") as file:
-			return next(line.split(":", 1)[1].strip() for line in file if line.startswith("model name"))
-	except (OSError, StopIteration):
-		return platform.processor() or platform.machine()
