@@ -308,7 +308,7 @@ void Exposure::beginLook()
 	pythonLooks::begin(*this);
 }
 
-void Exposure::show(const State& state)
+void Exposure::show(const State* state)
 {
 	if (shown != Shown::Touched) return;
 	if (rowOfState.empty()) {
@@ -319,7 +319,7 @@ void Exposure::show(const State& state)
 			rowOfState.emplace(cores[i]->state.get(), nodes.size() + i);
 		lookOfRow.resize(nodes.size() + cores.size());
 	}
-	const auto found = rowOfState.find(&state);
+	const auto found = rowOfState.find(state);
 	if (found == rowOfState.end() || wasTouched(found->second)) return;
 	if (!isConstrained[found->second]) expose(found->second);
 	lookOfRow[found->second] = lookNumber;

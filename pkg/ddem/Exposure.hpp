@@ -129,7 +129,7 @@ private:
 	std::vector<char> isConstrained; ///< by row: State has been written, and kinematic engines may have acted since
 	unsigned                                      lookNumber = 0;
 
-	void show(const State& state) override;
+	void show(const State* state) override;
 	void showAll() override;
 	bool wasTouched(std::size_t row) const
 	{

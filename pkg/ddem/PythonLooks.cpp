@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <unordered_map>
 #include <vector>
 
@@ -30,27 +31,57 @@ namespace {
 
 	bool forked = false;
 
-	ternaryfunc calledByBoost = nullptr;
+	ternaryfunc   calledByBoost = nullptr;
+	PyTypeObject* vectorType    = nullptr; ///< Vector3
 
-	void showWhatIsTouched(PyObject* function, PyObject* arguments)
+	void show(const State* state)
+	{
+		const std::lock_guard<std::mutex> held(busy);
+		for (LaggingState* bodies : lagging)
+			bodies->show(state);
+	}
+
+	/// Shows the State that a vector is part of: b.state.vel and b.state.angVel are references,
+	/// which Python may keep.
+	void showOwner(PyObject* argument, bool within = true)
+	{
+		if (within && (PyList_CheckExact(argument) || PyTuple_CheckExact(argument))) {
+			for (Py_ssize_t i = 0; i < PySequence_Fast_GET_SIZE(argument); i++)
+				showOwner(PySequence_Fast_GET_ITEM(argument, i), false);
+			return;
+		}
+		if (Py_TYPE(argument) != vectorType) return;
+		const boost::python::extract<const Vector3r&> vector(argument);
+		if (!vector.check()) return;
+		static const State   sample;
+		const auto           at = [](const void* part) { return reinterpret_cast<std::uintptr_t>(part); };
+		for (const Vector3r* member : { &sample.vel, &sample.angVel })
+			show(reinterpret_cast<const State*>(at(&vector()) - (at(member) - at(&sample))));
+	}
+
+	void showWhatIsTouched(PyObject* function, PyObject* arguments, PyObject* keywords)
 	{
 		const auto touches = known.find(function);
 		if (touches == known.end()) {
 			const std::lock_guard<std::mutex> held(busy);
 			for (LaggingState* bodies : lagging)
 				bodies->showAll();
-		} else if (touches->second == Touches::OneState && PyTuple_GET_SIZE(arguments) > 0) {
-			const boost::python::extract<const State&> state(PyTuple_GET_ITEM(arguments, 0));
-			if (!state.check()) return;
-			const std::lock_guard<std::mutex> held(busy);
-			for (LaggingState* bodies : lagging)
-				bodies->show(state());
+			return;
 		}
+		if (touches->second == Touches::OneState && PyTuple_GET_SIZE(arguments) > 0) {
+			const boost::python::extract<const State&> state(PyTuple_GET_ITEM(arguments, 0));
+			if (state.check()) show(&state());
+		}
+		for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(arguments); i++)
+			showOwner(PyTuple_GET_ITEM(arguments, i));
+		PyObject * name = nullptr, *value = nullptr;
+		for (Py_ssize_t place = 0; keywords && PyDict_Next(keywords, &place, &name, &value);)
+			showOwner(value);
 	}
 
 	PyObject* callWatched(PyObject* function, PyObject* arguments, PyObject* keywords)
 	{
-		if (anyLags.load(std::memory_order_acquire)) showWhatIsTouched(function, arguments);
+		if (anyLags.load(std::memory_order_acquire)) showWhatIsTouched(function, arguments, keywords);
 		return calledByBoost(function, arguments, keywords);
 	}
 
@@ -68,6 +99,8 @@ namespace {
 		};
 		list("touching_one_state", Touches::OneState);
 		list("touching_nothing", Touches::Nothing);
+		const py::object vector = looks.attr("minieigenHP").attr("Vector3");
+		vectorType              = reinterpret_cast<PyTypeObject*>(vector.ptr());
 		if (known.empty()) throw std::runtime_error("yade.ddem.looks lists no functions");
 		PyTypeObject* const type = Py_TYPE(known.begin()->first);
 		calledByBoost            = type->tp_call;

@@ -11,15 +11,16 @@ namespace yade {
 
 /** Bodies whose State lags behind the arrays of an engine.
  * Their class says what is shown; when, is decided here: whatever Python code does to a body goes through a function
- * that Boost.Python made, and those are watched. Functions that touch State of one body show that one. Functions known
+ * that Boost.Python made, and those are watched. Functions that touch State of one body show that one, and so does any
+ * function that gets its velocity or spin, which Python has by reference and may have kept. Functions known
  * to touch none (yade.ddem.looks lists them) show nothing. Any other function shows everything before it acts, so that
  * a function nobody thought of costs time and is never wrong.
  */
 class LaggingState {
 public:
 	virtual ~LaggingState() = default;
-	/// Brings one State up to date, if it is of these bodies.
-	virtual void show(const State& state) = 0;
+	/// Brings the State at this address up to date, if it is of these bodies.
+	virtual void show(const State* state) = 0;
 	/// Brings all of them up to date that have not been shown one by one.
 	virtual void showAll() = 0;
 };

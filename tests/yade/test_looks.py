@@ -10,7 +10,7 @@ from deformable_samples import agitate, elastic, in_main, skewed_mesh, start, st
 from waiting import BackgroundRun, until
 from yade import (
 	Body, DeformableElastMat, DeformableEngine, Engine, ForceResetter, FrictMat, NewtonIntegrator, O,
-	PeriodicEngine, PyRunner, RadialForceEngine, State, TranslationEngine, ddem, minieigenHP, utils
+	PeriodicEngine, PyRunner, RadialForceEngine, State, TranslationEngine, Vector3, ddem, minieigenHP, utils
 )
 
 STEPS = 12
@@ -49,6 +49,7 @@ class Scene:
 		O.engines = O.engines + ([runner] if place == "after" else []) + [NewtonIntegrator(damping=0)]
 		self.held = [O.bodies[i].state for i in (self.node, self.core)]
 		agitate(self.block, 5)
+		self.velocity, self.spin = self.held[0].vel, self.held[1].angVel  # references into State
 
 
 def give(owner, **attributes):
@@ -76,6 +77,9 @@ READ = {
 		list(state(s).angVel),
 	],
 	"flags": lambda s: [O.bodies[s.core].dynamic, O.bodies[s.core].isStandalone, O.bodies[s.core].mask],
+	"kept vectors": lambda s: [s.velocity[1], s.velocity.norm(), s.spin[2]],
+	"kept vector in a sum": lambda s: Vector3(1, 0, 0) + s.velocity,
+	"kept vector given on": lambda s: O.forces.addF(s.core, 100 * s.velocity),
 	"all": lambda s: [b.state.pos for b in O.bodies],
 	"driven": lambda s: [(O.bodies[int(i)].state.pos, O.bodies[int(i)].state.vel) for i in s.top],
 	"driven after bulk": lambda s: [utils.kineticEnergy(), [O.bodies[int(i)].state.vel for i in s.top]],
@@ -99,6 +103,8 @@ WRITTEN = {
 	"vel": lambda s: O.iter == 4 and give(O.bodies[s.node].state, vel=(0.3, 0.2, 0)),
 	"vel of all, each step": lambda s: [give(O.bodies[int(i)].state, vel=(0, -1, 0)) for i in s.block.triangle_ids],
 	"held": lambda s: [give(part, vel=(0.1, 0.1, 0)) for part in s.held],
+	"kept vector": lambda s: O.iter == 4 and s.velocity.__setitem__(1, 0.25),
+	"part of a vector": lambda s: O.iter == 4 and O.bodies[s.core].state.angVel.__setitem__(2, 3.0),
 	"pos": lambda s: O.iter == 4 and give(O.bodies[s.node].state, pos=O.bodies[s.node].state.pos + (1e-6, 0, 0)),
 	"ori": lambda s: O.iter == 4 and give(state(s), ori=utils.Quaternion((0, 0, 1), 0.01)),
 	"angVel": lambda s: O.iter == 4 and give(state(s), angVel=(0, 0, 3)),
