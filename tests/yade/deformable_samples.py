@@ -154,3 +154,63 @@ def append_bodies(nodes, triangles, material, thickness=1.0):
 		body.state.pos = body.state.refPos = (centre[0], centre[1], 0)
 		triangle_ids.append(O.bodies.append(body))
 	return node_ids, triangle_ids
+
+
+# --- what every law's material is held to, beside the numbers of its law
+
+
+def beside_point(material, point, triangle, rates):
+	"""A triangle driven at strain rates xx, yy, xy [1/s], a hundred steps of 1 µs each and one at rest, and a
+	:class:`MaterialPoint` on the same path; yields the engine and the point's path after each.
+
+	:param triangle: its vertices about their mean, where strains are zero [m]
+	"""
+	append_bodies(triangle, [(0, 1, 2)], material)
+	for body in O.bodies:
+		body.state.blockedDOFs = "xyzXYZ"
+	engine = start(rotation="none")
+	O.dt, now = 1e-6, np.zeros(3)
+	for rate in np.array(rates, float):
+		for body in O.bodies:
+			x, y = body.state.refPos[0], body.state.refPos[1]
+			body.state.vel = (rate[0] * x + rate[2] * y, rate[2] * x + rate[1] * y, 0)
+		steps(100)
+		now = now + 100 * O.dt * rate
+		for body in O.bodies:
+			body.state.vel = (0, 0, 0)
+		steps(1)
+		strain = dict(zip(("xx", "yy", "xy"), now))
+		yield engine, point.path(100 * O.dt, strain=strain, steps=100)
+
+
+def assert_goes_on_after_loading(file, count, names, energy):
+	"""So many steps from now, and from the scene saved now and loaded, give values of these names and an entry of
+	the energy book that are equal bit by bit."""
+	O.save(str(file))
+	results = []
+	for load in (False, True):
+		if load:
+			O.reset()
+			O.load(str(file))
+		engine = [e for e in O.engines if isinstance(e, DeformableEngine)][0]
+		steps(count)
+		results.append([engine.values(name) for name in names] + [O.energy[energy]])
+	for first, second in zip(*results):
+		assert np.array_equal(first, second)
+
+
+def assert_fields_reach_paraview(block, folder, names):
+	"""Fields of a law, sub-element by sub-element in the block and their means in the cells of a file."""
+	from vtkmodules.util.numpy_support import vtk_to_numpy
+	from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+	from yade.ddem import vtk
+	vtk.Recorder(block, str(folder / "block"))()
+	reader = vtkXMLUnstructuredGridReader()
+	reader.SetFileName(str(next(folder.rglob("*.vtu"))))
+	reader.Update()
+	cells = reader.GetOutput().GetCellData()
+	for name in names:
+		field = block.field(name)
+		assert field.shape == (len(block.triangle_ids), 3)
+		assert np.allclose(vtk_to_numpy(cells.GetArray(name)), field.mean(axis=1), rtol=1e-6, atol=0)

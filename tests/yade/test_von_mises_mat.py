@@ -5,14 +5,13 @@ import math
 
 import numpy as np
 import pytest
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from yade import DeformableEngine, O, VonMisesMat, ddem
-from yade.ddem import vtk
+from yade import O, VonMisesMat, ddem
 from yade.ddem.materialpoint import MaterialPoint
 
-from deformable_samples import append_bodies, bodies, start, steps
+from deformable_samples import (
+	assert_fields_reach_paraview, assert_goes_on_after_loading, beside_point, bodies, start, steps
+)
 
 YIELD = 270e6  # [Pa]: steel 304L of Zubelewicz (2018), the default
 
@@ -63,22 +62,8 @@ def equivalent(stress):
 @pytest.mark.parametrize("hardening", [0, 5e9])
 def test_a_triangle_follows_the_material_point(hardening):
 	material = VonMisesMat(hardening=hardening)
-	append_bodies([(-1, -1), (2, -1), (-1, 2)], [(0, 1, 2)], material)
-	for body in O.bodies:
-		body.state.blockedDOFs = "xyzXYZ"
-	engine = start(rotation="none")
-	O.dt = dt = 1e-6
-	point, now = MaterialPoint(material), np.zeros(3)
-	for rate in np.array([(50, -20, 0), (-80, 0, 40), (0, 60, 20)]) * 1.0:  # xx, yy, xy [1/s]
-		for body in O.bodies:
-			x, y = body.state.refPos[0], body.state.refPos[1]
-			body.state.vel = (rate[0] * x + rate[2] * y, rate[2] * x + rate[1] * y, 0)
-		steps(100)
-		now = now + 100 * dt * rate
-		for body in O.bodies:
-			body.state.vel = (0, 0, 0)
-		steps(1)
-		end = point.path(100 * dt, strain=dict(zip(("xx", "yy", "xy"), now)), steps=100)
+	triangle, rates = [(-1, -1), (2, -1), (-1, 2)], [(50, -20, 0), (-80, 0, 40), (0, 60, 20)]
+	for engine, end in beside_point(material, MaterialPoint(material), triangle, rates):
 		assert engine.values("stress")[0] == pytest.approx(np.tile(end.stress[-1], (3, 1)), rel=1e-9, abs=1)
 		plastic, accumulated = end.plastic_strain[-1], end.fields["accumulatedPlasticStrain"][-1]
 		assert engine.values("plasticStrain")[0] == pytest.approx(np.tile(plastic, (3, 1)), rel=1e-9, abs=1e-14)
@@ -90,18 +75,8 @@ def test_a_block_that_yields_is_saved_and_goes_on_bit_by_bit(tmp_path):
 	_, engine = stretched(speed=20)
 	steps(300)
 	assert engine.values("accumulatedPlasticStrain").max() > 1e-4
-	O.save(str(tmp_path / "steel.xml"))
-	results = []
-	for load in (False, True):
-		if load:
-			O.reset()
-			O.load(str(tmp_path / "steel.xml"))
-		engine = [e for e in O.engines if isinstance(e, DeformableEngine)][0]
-		steps(300)
-		names = ("stress", "plasticStrain", "accumulatedPlasticStrain", "plasticDissipation")
-		results.append([engine.values(name) for name in names] + [O.energy["plasticFlow"]])
-	for first, second in zip(*results):
-		assert np.array_equal(first, second)
+	names = ("stress", "plasticStrain", "accumulatedPlasticStrain", "plasticDissipation")
+	assert_goes_on_after_loading(tmp_path / "steel.xml", 300, names, "plasticFlow")
 
 
 def test_fields_come_by_themselves(tmp_path):
@@ -115,14 +90,7 @@ def test_fields_come_by_themselves(tmp_path):
 	assert block.plastic_strain[..., :3].sum(axis=-1) == pytest.approx(0, abs=1e-15)
 	volume = np.asarray(block.area)[:, None] / 3
 	assert (engine.values("plasticDissipation") * volume).sum() == pytest.approx(O.energy["plasticFlow"], rel=1e-12)
-	vtk.Recorder(block, str(tmp_path / "block"))()
-	reader = vtkXMLUnstructuredGridReader()
-	reader.SetFileName(str(next(tmp_path.rglob("*.vtu"))))
-	reader.Update()
-	cells = reader.GetOutput().GetCellData()
-	for name in ("accumulatedPlasticStrain", "plasticDissipation"):
-		assert block.field(name).shape == (len(block.triangle_ids), 3)
-		assert vtk_to_numpy(cells.GetArray(name)) == pytest.approx(block.field(name).mean(axis=1), rel=1e-6)
+	assert_fields_reach_paraview(block, tmp_path, ("accumulatedPlasticStrain", "plasticDissipation"))
 
 
 @pytest.mark.parametrize("name, value", [("yieldStress", 0), ("hardening", -1e9), ("yieldStress", math.nan)])

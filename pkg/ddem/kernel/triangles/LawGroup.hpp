@@ -138,7 +138,7 @@ public:
 	 * from below, for h = m Δε. (One step at a time errs on the same side, so the difference is less.) A held
 	 * step lies above: the predictor has done without flow for at most m − 1 steps, which is at most M (m − 1)
 	 * Δε. Each reversal of strain adds the same once more, and fades with the strain that follows. Measured for
-	 * m = 2, 4 and 8 (held_steps_test): 0.16 to 0.27 of the bound in slow compression, 0.06 to 0.1 of twice the
+	 * m = 2, 4 and 8 (flow_interval_test): 0.16 to 0.27 of the bound in slow compression, 0.06 to 0.1 of twice the
 	 * bound in cycles, 0.12 to 0.2 in a ramp to 10²/s. */
 	unsigned flowInterval = 1;
 	/// What has gone by since flow was last solved, as far as it waits. Saved with a sample, so that it goes on
