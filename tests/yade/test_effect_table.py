@@ -14,7 +14,7 @@ from yade import (
 	ScalarDamageMat, Vector3, VonMisesMat, ddem
 )
 from yade.ddem import bonded, packing
-from yade.ddem.effect_table import NOTHING
+from yade.ddem.effect_entries import NOTHING
 from yade.ddem.reports.uniaxial import Report
 from yade.ddem.studies import uniaxial
 
