@@ -50,7 +50,7 @@ class EffectTable:
 	"""What :func:`effects` returns; ``print`` shows it, :meth:`rows` gives it as plain data."""
 
 	def __init__(self, groups):
-		self.groups = groups  #: list of :class:`Group`
+		self.groups = groups  #: list of :class:`effect_entries.Group`
 
 	def __len__(self):
 		return len(self.groups)
