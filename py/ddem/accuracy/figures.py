@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 from matplotlib import rc_context
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter, NullLocator
 
 from .. import plots
 from . import convergence, sentences
@@ -20,11 +20,21 @@ def _mantissa(value):
 	return round(value / 10**math.floor(math.log10(value) + 1e-9))
 
 
+def _ticks(axis, low, high, words):
+	"""Ticks of a logarithmic axis: decades where there are several, else 1, 2 and 5 as well."""
+	decades = high > 200 * low
+	axis.set_major_locator(LogLocator(subs=(1, ) if decades else (1, 2, 5), numticks=12))
+	axis.set_major_formatter(FuncFormatter(words) if words else LogFormatterMathtext() if decades else "{x:.2g}")
+	axis.set_minor_formatter(NullFormatter())
+
+
 def _axes(ax):
 	ax.set_xscale("log")
 	ax.set_yscale("log")
-	if ax.get_ylim()[0] > 2e-5:  # else powers of ten read better
-		ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+	ax.margins(x=0.12, y=0.2)
+	per_cent = ax.get_ylim()[0] > 2e-5  # else powers of ten read better
+	_ticks(ax.yaxis, *ax.get_ylim(), (lambda value, _: f"{100 * value:g} %") if per_cent else None)
+	_ticks(ax.xaxis, *ax.get_xlim(), lambda value, _: f"{value:g}")
 	ax.set_xlabel("processor time of the steps [s]")
 	ax.set_ylabel("relative error [-]")
 
@@ -48,27 +58,44 @@ def work_precision(points, width=plots.COLUMN):
 			for group in part:
 				_line(ax, group, number)
 				number += 1
-			for place, p in enumerate(part[0]):  # one above, one below, so that neighbours keep apart
-				above = place % 2
-				ax.annotate(
-					p.rung, (p.cpu_s, sentences.known(p)), textcoords="offset points",
-					xytext=(0, 7 if above else -11), ha="center",
-					fontsize=6, color="#555555"
-				)
+			if part is parts[0]:
+				_label(ax, part[0])
 			_axes(ax)
-			ax.margins(x=0.12, y=0.2)
 			if ax is not grid[-1, 0]:
 				ax.set_xlabel("")
 		figure.legend(loc="outside upper center", ncols=1)
 	return figure
 
 
+def _label(ax, group):
+	"""The rungs beside their points: one above, one below along a line, so that neighbours keep apart; where they
+	stand for one another, and have long names, numbers with a key over the axes."""
+	if group[0].kind in sentences.COMPARED:
+		for number, p in enumerate(group, 1):
+			ax.annotate(
+				str(number), (p.cpu_s, sentences.known(p)), textcoords="offset points", xytext=(0, 7),
+				ha="center", fontsize=6, color="#555555"
+			)
+		key = "\n".join(f"{number}: {p.rung}" for number, p in enumerate(group, 1))
+		ax.set_title(key, fontsize=6, loc="left", color="#555555")
+		return
+	for place, p in enumerate(group):
+		ax.annotate(
+			p.rung, (p.cpu_s, sentences.known(p)), textcoords="offset points",
+			xytext=(0, 7 if place % 2 else -11), ha="center", fontsize=6, color="#555555"
+		)
+
+
 def _line(ax, group, number):
 	x, y = np.array([p.cpu_s for p in group]), np.array([sentences.known(p) for p in group])
 	colour = plots.COLOURS[number % len(plots.COLOURS)]
 	_, slope = convergence.power_law(x, y)
-	name = group[0].quantity + (f", slope {slope:.2g}" if len(group) > 2 and math.isfinite(slope) else "")
-	ax.plot(x, y, marker=_MARKS[number % len(_MARKS)], markersize=3.5, color=colour, label=name)
+	apart = group[0].kind in sentences.COMPARED  # settings that stand for one another lie on no line
+	sloped = len(group) > 2 and math.isfinite(slope) and not apart
+	name = group[0].quantity + (f", slope {slope:.2g}" if sloped else "")
+	mark = _MARKS[number % len(_MARKS)]
+	line = "none" if apart else "-"
+	ax.plot(x, y, linestyle=line, marker=mark, markersize=3.5, color=colour, label=name)
 	front = [p for p in group if p.pareto]
 	ax.plot(
 		[p.cpu_s for p in front], [sentences.known(p) for p in front], "o", markersize=7, fillstyle="none",
