@@ -98,10 +98,15 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 			if constexpr (energy) {
 				auto kept = state;
 				Law::template bookHeld<effects>(strain, stress, kept);
-				const auto stay = !(lanes | later); // those that move book their step themselves
+				if (none && !again) { // all of the batch stays
+					Law::template fields<effects>(kept, StoreFields<Number> { column, stride });
+					state = kept;
+					return stress;
+				}
+				// those that move book their step themselves
+				const auto stay = !(lanes | later);
 				Law::template fields<effects>(
 				        kept, StoreSomeFields<Number, decltype(lanes)> { column, stride, stay });
-				if (none && !again) state = kept;
 			}
 			if (none) {
 				if (!again) return stress;
