@@ -25,15 +25,16 @@ from yade.ddem.studies import commandline
 
 
 def main():
-	options = read_options()
+	options, parser = read_options()
 	if options.list:
 		print_list(options.known)
 		return 0
-	work = study.Study(
-		options.chosen, options.out, threads=options.threads, jobs=options.jobs, budget=options.budget,
-		report=lambda text: print(text, flush=True)
-	)
-	points = work.run(options.target)
+	with commandline.workers(parser, options, alike="node") as workers:
+		work = study.Study(
+			options.chosen, options.out, threads=options.threads, workers=workers, budget=options.budget,
+			report=lambda text: print(text, flush=True)
+		)
+		points = work.run(options.target)
 	told = sentences.all_of(points)
 	print()
 	print(page.table(points))
@@ -62,15 +63,12 @@ def read_options():
 	)
 	parser.add_argument("--budget", type=duration, default=600.0, metavar="5min", help="time for all of it")
 	parser.add_argument("--threads", type=int, default=1, metavar="N", help="OpenMP threads of every run")
-	parser.add_argument(
-		"--jobs", type=int, default=1, metavar="N", help="runs at the same time, which disturbs their times"
-	)
+	commandline.add_workers(parser, 1, "runs", ", which disturb each other's times")
 	parser.add_argument(
 		"--out", default=os.path.join("out", "accuracy_cost"), metavar="DIR", help="folder for all files"
 	)
 	options = parser.parse_args(sys.argv[1:])
 	commandline.require_between(parser, "--threads", options.threads, 1, 1024)
-	commandline.require_between(parser, "--jobs", options.jobs, 1, 1024)
 	options.known = list(ladders.LADDERS)
 	if options.ladders:
 		try:
@@ -92,7 +90,7 @@ def read_options():
 		parser.error(f"argument --case: {error}")
 	if not options.list:
 		commandline.require_writable(parser, "--out", options.out)
-	return options
+	return options, parser
 
 
 def of_file(path):

@@ -55,17 +55,19 @@ INTERRUPTED = 130
 def main():
 	for number in (signal.SIGTERM, signal.SIGHUP):
 		signal.signal(number, interrupt)
-	options = read_options()
+	options, parser = read_options()
+	workers = commandline.workers(parser, options)
 	groups = plan(options)
 	if options.fresh:
 		shutil.rmtree(os.path.join(options.out, "runs"), ignore_errors=True)
 	cases = by_length(case for _, members in groups for case in members)
-	print(f"{len(cases)} runs, {options.jobs} at the same time", flush=True)
+	print(f"{len(cases)} runs, {workers.told()}", flush=True)
 	try:
-		folders = Campaign(
-			os.path.join(SCRIPTS, "ucs_bonded.py"), cases, os.path.join(options.out, "runs"), options.jobs,
-			tell
-		).run()
+		with workers:
+			folders = Campaign(
+				os.path.join(SCRIPTS, "ucs_bonded.py"), cases, os.path.join(options.out, "runs"),
+				workers, tell
+			).run()
 	except KeyboardInterrupt:
 		print("\nInterrupted; the same command goes on from what is finished.")
 		sys.exit(INTERRUPTED)
@@ -180,10 +182,7 @@ def read_options():
 	)
 	run = parser.add_argument_group("run")
 	run.add_argument("--quick", action="store_true", help="large spheres only, two packings, long steps")
-	run.add_argument(
-		"--jobs", type=count, default=os.cpu_count(), metavar="N",
-		help="runs at the same time, each in a YADE of its own on one thread"
-	)
+	commandline.add_workers(run, os.cpu_count(), "runs", ", each in a YADE of its own on one thread")
 	run.add_argument(
 		"--out",
 		default=os.path.join("out", "bonded_figures"),
@@ -223,7 +222,7 @@ def read_options():
 	if options.safety == 0:
 		parser.error("argument --safety: 0 leaves no time step")
 	require_writable(parser, "--out", options.out)
-	return options
+	return options, parser
 
 
 # ---- what the page says about the runs ----

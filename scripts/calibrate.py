@@ -59,24 +59,26 @@ def main():
 		signal.signal(number, interrupt)
 	options, parser = read_options()
 	try:
-		setup, targets, tuned, fixed, evaluate = prepare(options)
+		setup, targets, tuned, fixed, separate = prepare(options)
 		require_writable(parser, "--out", options.out)
 		tests = virtualtest.cases([t.name for t in targets], options.seeds)
+		workers = commandline.workers(parser, options)
+		evaluate = separate(workers)
 		bench = Bench(
 			evaluate, tests, evaluate.settings(), os.path.join(options.out, "evaluations.jsonl"),
-			options.jobs, options.budget
+			options.budget
 		)
 		progress = Progress(options.model, tuned, targets, lambda line: print(line, flush=True))
 		calibration = Calibration(tuned, targets, bench, options.step, options.sensitivities, progress)
 	except (ValueError, OSError, RuntimeError) as error:
 		parser.error(str(error))
-	with bench:
+	with workers, bench:
 		for number, reason in bench.store.unreadable:
 			print(
 				f"{bench.store.path}, line {number} is not readable ({reason}); its evaluation is "
 				"made again"
 			)
-		print(introduction(options, bench))
+		print(introduction(options, bench, workers))
 		progress.header()
 		try:
 			outcome = calibration.run()
@@ -92,7 +94,8 @@ def interrupt(*_):
 
 
 def prepare(options):
-	"""Specimen, targets, parameters to tune, fixed ones, and what evaluates; ValueError before anything runs."""
+	"""Specimen, targets, parameters to tune, fixed ones, and what evaluates on some workers;
+	ValueError before anything runs."""
 	changes = {
 		"radii": options.radii and tuple(options.radii), "fails": options.fails, "size": options.size,
 		"density": options.density, "velocity": options.velocity,
@@ -147,8 +150,8 @@ def prepare(options):
 		fixed.update((name, fixed.get(name, material[name])) for name in ("bulk", "shear"))
 	fixed = {name: value for name, value in fixed.items() if name not in names}
 	virtualtest.material(options.model, {**fixed, **{p.name: p.start for p in tuned}}, setup.density)
-	evaluate = virtualtest.SeparateYade(setup, fixed, cache=os.path.abspath(os.path.join(options.out, "packings")))
-	return setup, targets, tuned, fixed, evaluate
+	cache = os.path.abspath(os.path.join(options.out, "packings"))
+	return setup, targets, tuned, fixed, lambda workers: virtualtest.SeparateYade(setup, fixed, cache, workers)
 
 
 # ---- options ----
@@ -296,9 +299,7 @@ def read_options():
 		help="stiffness of the platens of spheres over Young's modulus of the bonds"
 	)
 	search = parser.add_argument_group("search")
-	search.add_argument(
-		"--jobs", type=count, default=os.cpu_count(), metavar="N", help="evaluations at the same time"
-	)
+	commandline.add_workers(search, os.cpu_count(), "evaluations")
 	search.add_argument("--budget", type=count, default=60, metavar="N", help="no more new evaluations than this")
 	search.add_argument(
 		"--step", type=share, default=0.08, metavar="PART",
@@ -356,11 +357,11 @@ def kinds(bench):
 	return " and ".join(dict.fromkeys(case["test"] for case in bench.cases))
 
 
-def introduction(options, bench):
+def introduction(options, bench, workers):
 	seeds = f", mean of {len(options.seeds)} seeds" if len(options.seeds) > 1 else ""
 	return (
 		f"Calibration of the {options.model} model on a {options.specimen}: {kinds(bench)}{seeds}; "
-		f"{bench.jobs} at the same time.\n"
+		f"{workers.told()}.\n"
 	)
 
 

@@ -30,7 +30,7 @@ import sys
 
 KEY = "provenance"  #: of JSON files, of VTK's field data, of the comment in CSV files
 #: options of scripts that change no number: which files are written and where, and how many threads work
-NO_INPUT = {"out", "report", "json", "pictures", "pdf", "vtk", "progress", "threads", "jobs"}
+NO_INPUT = {"out", "report", "json", "pictures", "pdf", "vtk", "progress", "threads", "jobs", "cluster"}
 _HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -275,7 +275,6 @@ def machine():
 	return {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count()}
 
 
-@functools.lru_cache(maxsize=None)
 def processor():
 	"""Name of the processor."""
 	try:

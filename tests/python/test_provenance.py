@@ -279,7 +279,7 @@ KNOWN = {
 	"vtk.py": (1, "with a text in the field data"),
 	"verification/framework.py": (1, "with metadata"),
 	"verification/freefem.py": (1, "what FreeFem++ reads, in a temporary folder"),
-	"studies/processes.py": (2, "what two processes hand each other"),
+	"studies/yade_process.py": (1, "what two processes hand each other"),
 	"studies/esys/__init__.py": (1, "what ESyS-Particle reads"),
 	"studies/esys/compression.py": (1, "what ESyS-Particle hands back, in its own Python"),
 }

@@ -32,9 +32,9 @@ def power_laws(values, case):
 
 
 def calibrate(
-	model, tuned=(STIFFNESS, COHESION), targets=TARGETS, path=None, jobs=1, budget=60, cases=({},), **options
+	model, tuned=(STIFFNESS, COHESION), targets=TARGETS, path=None, budget=60, cases=({},), **options
 ):
-	with Bench(model, cases, path=path, jobs=jobs, budget=budget) as bench:
+	with Bench(model, cases, path=path, budget=budget) as bench:
 		outcome = Calibration(tuned, targets, bench, **options).run()
 	return outcome, bench
 
@@ -360,21 +360,6 @@ def test_interrupted_search_goes_on(tmp_path, after):
 	resumed, rest = calibrate(power_laws, path=tmp_path / "e")
 	assert (rest.ran, rest.reused) == (bench.ran - after, after)
 	assert resumed.best.values == whole.best.values
-
-
-def test_jobs_at_the_same_time_change_nothing():
-	serial, one = calibrate(
-		power_laws, (STIFFNESS, COHESION, ANGLE), [*TARGETS, TENSILE], cases=[{"seed": 1}, {"seed": 2}]
-	)
-	parallel, many = calibrate(
-		power_laws, (STIFFNESS, COHESION, ANGLE), [*TARGETS, TENSILE], jobs=4, cases=[{"seed": 1}, {"seed": 2}]
-	)
-	assert one.ran == many.ran
-	first, second = (
-		[(s.purpose, s.parameter, s.point.values, s.point.measured) for s in outcome.steps]
-		for outcome in (serial, parallel)
-	)
-	assert first == second
 
 
 def test_every_point_is_told_once():

@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """Evaluations that are kept: what is reused, what is not, and what a killed or damaged run leaves."""
+import concurrent.futures
 import json
 import threading
 
@@ -21,6 +22,17 @@ class Counted:
 
 	def stop(self):
 		self.stopped = True
+
+
+class Threads:
+	"""Evaluates a model in threads, as workers do in processes."""
+
+	def __init__(self, model, number):
+		self.stop = getattr(model, "stop", lambda: None)
+		self._model, self._pool = model, concurrent.futures.ThreadPoolExecutor(number)
+
+	def submit(self, values, case):
+		return self._pool.submit(self._model, values, case)
 
 
 def points(*numbers):
@@ -177,7 +189,7 @@ def test_evaluations_run_at_the_same_time_and_give_the_same():
 		meeting.wait()  # hangs unless three are here at once
 		return {"y": values["x"]**2}
 
-	with Bench(together, jobs=3) as bench:
+	with Bench(Threads(together, 3)) as bench:
 		parallel = bench.measure(points(3, 1, 2))
 	with Bench(lambda values, _: {"y": values["x"]**2}) as bench:
 		serial = bench.measure(points(3, 1, 2))
@@ -191,7 +203,7 @@ def test_evaluations_run_at_the_same_time_and_give_the_same():
 
 def test_the_same_point_twice_is_one_evaluation():
 	model = Counted()
-	with Bench(model, jobs=2) as bench:
+	with Bench(Threads(model, 2)) as bench:
 		assert len(bench.measure(points(1, 1))) == 2
 	assert len(model.asked) == 1
 
@@ -207,14 +219,14 @@ def test_interruption_keeps_what_was_finished_and_ends_the_rest(tmp_path):
 				return {"y": 2.0}
 			if values["x"] == 2:
 				finished.wait(10)
-				raise KeyboardInterrupt
+				raise KeyboardInterrupt  # as its waiting thread gets it from Ctrl-C
 			assert stopped.wait(10)
 			raise EvaluationError("ended")
 
 		def stop(self):
 			stopped.set()
 
-	with Bench(Model(), path=tmp_path / "e", jobs=3) as bench:
+	with Bench(Threads(Model(), 3), path=tmp_path / "e") as bench:
 		with pytest.raises(KeyboardInterrupt):
 			bench.measure(points(1, 2, 3))
 	assert stopped.is_set()
@@ -238,10 +250,15 @@ def test_second_process_is_refused(tmp_path):
 	Store(tmp_path / "e").close()
 
 
-@pytest.mark.parametrize(
-	"options, message",
-	[({"cases": []}, "at least one case"), ({"jobs": 0}, "jobs = 0"), ({"jobs": 1.5}, "jobs = 1.5")],
-)
-def test_bad_input(options, message):
-	with pytest.raises(ValueError, match=message):
-		Bench(Counted(), **options)
+def test_a_bench_needs_a_case():
+	with pytest.raises(ValueError, match="at least one case"):
+		Bench(Counted(), cases=[])
+
+
+def test_how_an_evaluation_was_made_is_written_beside_it(tmp_path):
+	"""Seconds are those of the evaluation, without its time in a queue; the node is where it was made."""
+	with Bench(lambda *_: {"y": 1, "about": {"seconds": 123.0, "node": "there"}}, path=tmp_path / "e") as bench:
+		(point, ) = bench.measure(points(1))
+	(line, ) = lines(tmp_path / "e")
+	assert point.measured == {"y": 1.0} and point.seconds == bench.seconds == line["seconds"] == 123.0
+	assert line["node"] == "there"

@@ -8,6 +8,7 @@ import script_modules
 
 from yade import O
 from yade.ddem.accuracy import ladders, points, rungs, study
+from yade.ddem.studies.workers import Here
 
 MINE = '''
 from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
@@ -43,11 +44,11 @@ def here(monkeypatch):
 	"""Rungs in this YADE, one after the other; returns the settings that were asked for."""
 	asked = []
 
-	def evaluate(self, values, case):
+	def submit(self, values, case):
 		asked.append(values)
-		return rungs.perform(case["scene"], values)
+		return Here().submit(rungs.perform, case["scene"], values)
 
-	monkeypatch.setattr(rungs.SeparateRung, "__call__", evaluate)
+	monkeypatch.setattr(rungs.SeparateRung, "submit", submit)
 	return asked
 
 

@@ -7,6 +7,7 @@ import pytest
 from yade import ddem
 from yade.ddem.accuracy import rungs, study
 from yade.ddem.accuracy.ladders import Ladder, Quantity, each
+from yade.ddem.studies import workers
 
 SIZES = (0.008, 0.004, 0.002)
 DEFLECTION = Quantity("deflection", "displacement", "m")
@@ -66,7 +67,7 @@ def test_a_study_that_was_cut_off_goes_on(tmp_path):
 
 def test_results_of_another_machine_are_not_mixed(tmp_path, monkeypatch):
 	study.Study([ladder()], str(tmp_path), evaluate=Known()).run()
-	monkeypatch.setattr(study.platform, "node", lambda: "elsewhere")
+	monkeypatch.setattr(workers.platform, "node", lambda: "elsewhere")
 	other = Known()
 	study.Study([ladder()], str(tmp_path), evaluate=other).run()
 	assert other.asked == list(SIZES)
@@ -142,16 +143,19 @@ LADDERS = [
 def test_a_scene_of_one_s_own_in_yades_of_their_own(tmp_path):
 	file = tmp_path / "mine.py"
 	file.write_text(SCENE)
-	answers = [rungs.SeparateRung()({"size": size}, {"scene": f"{file}:stretched"}) for size in (0.02, 0.01)]
+	perform = lambda settings, scene="stretched": rungs.SeparateRung().submit(
+		settings, {"scene": f"{file}:{scene}"}
+	).result()
+	answers = [perform({"size": size}) for size in (0.02, 0.01)]
 	for answer in answers:
 		assert answer["steps"] == 100 and answer["error:travel"] < 1e-9 and answer["value:size"] in (0.02, 0.01)
 		assert answer["particle_steps"] == 100 * answer["particles"] and answer["dt_s"] == 1e-7
 		assert answer["unknowns"] > 3 * answer["particles"] and answer["cpu_s"] > 0
 	assert answers[1]["particles"] == 4 * answers[0]["particles"] and answers[0]["threads"] == 1
-	two = rungs.SeparateRung()({"size": 0.02, "threads": 2}, {"scene": f"{file}:stretched"})
+	two = perform({"size": 0.02, "threads": 2})
 	assert two["threads"] == 2 and two["value:travel"] == answers[0]["value:travel"]
 	with pytest.raises(rungs.EvaluationError, match="AttributeError.*nothing"):
-		rungs.SeparateRung()({"size": 0.02}, {"scene": f"{file}:nothing"})
+		perform({"size": 0.02}, "nothing")
 
 
 def test_the_files(tmp_path):

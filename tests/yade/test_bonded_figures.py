@@ -30,7 +30,7 @@ def options(job, monkeypatch, tmp_path):
 		monkeypatch.setattr(
 			"sys.argv", [script_modules.path("bonded_figures"), "--out", str(tmp_path / "out"), *arguments]
 		)
-		return job.read_options()
+		return job.read_options()[0]
 
 	return read
 

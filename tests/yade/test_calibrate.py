@@ -12,6 +12,7 @@ import pytest
 import script_modules
 
 from yade.ddem.studies import virtualtest
+from yade.ddem.studies.workers import Here
 
 from waiting import until
 
@@ -31,11 +32,11 @@ def here(monkeypatch):
 	"""Evaluations in this YADE, one after the other; returns the list of what was asked."""
 	asked = []
 
-	def evaluate(self, values, case):
+	def submit(self, values, case):
 		asked.append(values)
-		return virtualtest.perform(self.setup, {**self.fixed, **values}, case, self.cache)
+		return Here().submit(virtualtest.perform, self.setup, {**self.fixed, **values}, case, self.cache)
 
-	monkeypatch.setattr(virtualtest.SeparateYade, "__call__", evaluate)
+	monkeypatch.setattr(virtualtest.SeparateYade, "submit", submit)
 	return asked
 
 
@@ -145,7 +146,7 @@ def test_failed_evaluations_are_reported_and_kept(job, monkeypatch, tmp_path, ca
 	(["--ucs", "60e6", "--uncertainty", "1"], "unrecognized arguments"),
 ])
 def test_bad_options_are_refused_before_anything_runs(job, monkeypatch, tmp_path, capsys, arguments, message):
-	monkeypatch.setattr(virtualtest.SeparateYade, "__call__", lambda *_: pytest.fail("a test was started"))
+	monkeypatch.setattr(virtualtest.SeparateYade, "submit", lambda *_: pytest.fail("a test was started"))
 	monkeypatch.setattr(
 		sys, "argv", ["scripts/calibrate.py", "--jobs", "1", "--out", str(tmp_path / "out"), *arguments]
 	)

@@ -1,12 +1,17 @@
 # GPL v2 or later, see LICENSE.
-"""Campaigns of runs in YADEs of their own: reuse, failures, interruption. A shell script stands in for YADE."""
+"""Campaigns of runs in YADEs of their own: reuse, failures, interruption, killed workers. A shell script stands in for
+YADE."""
 import json
 import os
+import signal
 
 import pytest
 
 from yade.ddem.studies import commandline
 from yade.ddem.studies.campaign import FINISHED, Campaign, Case, Failed
+from yade.ddem.studies.workers import Here, Workers
+
+from waiting import until
 
 CASES = [Case(f"seed{number}", ("--seed", str(number))) for number in (1, 2, 3)]
 
@@ -37,13 +42,15 @@ def started(tmp_path):
 	return lambda: sorted(line.split()[1] for line in (tmp_path / "started").read_text().splitlines())
 
 
-def campaign(tmp_path, yade, cases=CASES, **options):
-	return Campaign("script.py", cases, tmp_path / "runs", yade=yade, **options)
+def campaign(tmp_path, yade, cases=CASES, workers=None, **options):
+	return Campaign("script.py", cases, tmp_path / "runs", workers or Here(), yade=yade, **options)
 
 
 def test_every_case_has_a_folder(tmp_path, yade, started):
 	said = []
-	folders = campaign(tmp_path, yade("test -d $out"), jobs=2, report=lambda *done: said.append(done)).run()
+	with Workers(jobs=2) as work:
+		program, report = yade("test -d $out"), lambda *done: said.append(done)
+		folders = campaign(tmp_path, program, workers=work, report=report).run()
 	assert {case.name: os.path.basename(folder) for case, folder in folders.items()} == {
 		f"seed{n}": f"seed{n}" for n in (1, 2, 3)
 	}
@@ -116,15 +123,41 @@ def test_interruption_ends_what_is_running(tmp_path, yade):
 		"case $2 in 1) echo $$ > $out/pid; exec sleep infinity;; esac; "
 		"while ! test -e $out/../seed1/pid; do sleep 0.01; done"
 	)
-	running = campaign(tmp_path, program, jobs=2, report=press)
-	with pytest.raises(KeyboardInterrupt):
-		running.run()
-	assert not os.path.exists(f"/proc/{(tmp_path / 'runs' / 'seed1' / 'pid').read_text().strip()}")
+	with Workers(jobs=2) as work:
+		running = campaign(tmp_path, program, workers=work, report=press)
+		with pytest.raises(KeyboardInterrupt):
+			running.run()
+	until(lambda: not os.path.exists(f"/proc/{(tmp_path / 'runs' / 'seed1' / 'pid').read_text().strip()}"))
 	assert running.finished(CASES[1]) and not running.finished(CASES[0])
+
+
+def test_a_run_whose_worker_is_killed_is_made_by_another(tmp_path, yade, started):
+	"""The first run of a seed waits to be killed; its YADE dies with its worker, and a second one is started."""
+	program = yade(
+		"mkdir $out/../../tried$2 2>/dev/null || exit_now=1; "
+		"case $2$exit_now in 2) echo $PPID > $out/../../victim; echo $$ > $out/../../orphan; exec sleep infinity;; esac"
+	)
+	killed = []
+
+	def kill_worker(*_):
+		"""Called when another run has finished; the worker is what the YADE's parent process is."""
+		if not killed:
+			killed.append(int(until(lambda: read(tmp_path / "victim"))))
+			os.kill(killed[0], signal.SIGKILL)
+
+	with Workers(jobs=2) as work:
+		folders = campaign(tmp_path, program, workers=work, report=kill_worker).run()
+		assert killed[0] not in work.workers.values()
+	assert sorted(os.path.basename(folder) for folder in folders.values()) == ["seed1", "seed2", "seed3"]
+	assert started() == ["1", "2", "2", "3"]
+	until(lambda: not os.path.exists(f"/proc/{read(tmp_path / 'orphan')}"))
+
+
+def read(path):
+	"""A line of a file; nothing before it is there."""
+	return path.read_text().strip() if path.exists() else ""
 
 
 def test_bad_campaigns(tmp_path):
 	with pytest.raises(ValueError, match="same name: seed1"):
 		campaign(tmp_path, "yade", [CASES[0], CASES[0]])
-	with pytest.raises(ValueError, match="jobs = 0"):
-		campaign(tmp_path, "yade", jobs=0)

@@ -1,8 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """Virtual tests of small specimens, in this YADE and in others, and a calibration that finds known parameters again."""
-import dataclasses
-import json
 import os
+import platform
 import stat
 
 import pytest
@@ -12,8 +11,7 @@ from yade.ddem.studies.calibration import Calibration, Target
 from yade.ddem.studies.calibration_quantities import parameters
 from yade.ddem.studies.evaluations import Bench, EvaluationError
 from yade.ddem.studies.virtualtest import SeparateYade, Setup, perform
-
-from waiting import until
+from yade.ddem.studies.workers import Workers
 
 PRISM = Setup.standard("rigid", "prism", radii=(1.2e-3, 2.5e-3), fails=200)
 BLOCK = Setup.standard("deformable", "block", size=0.02, velocity=4.0)
@@ -111,12 +109,13 @@ def test_known_parameters_are_found_again():
 def test_known_bonds_are_found_again_in_other_processes(tmp_path):
 	truth = {"young": 30e9, "cohesion": 45e6}
 	prism = Setup.standard("rigid", "prism", radii=(0.8e-3, 2e-3))
-	evaluate = SeparateYade(prism, {"poisson": 0.25}, str(tmp_path / "packings"))
+	work = Workers(jobs=2)
+	evaluate = SeparateYade(prism, {"poisson": 0.25}, str(tmp_path / "packings"), work)
 	measured = perform(prism, {**truth, "poisson": 0.25}, COMPRESSION)
 	targets = [Target(name, measured[name], 0.01) for name in ("young", "ucs")]
 	tuned = parameters("rigid", list(truth), {"young": 50e9, "cohesion": 80e6})
-	with Bench(
-		evaluate, [COMPRESSION], evaluate.settings(), tmp_path / "evaluations.jsonl", jobs=2, budget=20
+	with work, Bench(
+		evaluate, [COMPRESSION], evaluate.settings(), tmp_path / "evaluations.jsonl", budget=20
 	) as bench:
 		outcome = Calibration(tuned, targets, bench).run()
 	assert outcome.reached
@@ -127,32 +126,17 @@ def test_known_bonds_are_found_again_in_other_processes(tmp_path):
 
 
 def test_a_yade_of_its_own_gives_the_same():
-	evaluate = SeparateYade(PRISM, {"poisson": 0.25})
-	tuned = {"young": 50e9, "cohesion": 60e6}
-	measured = evaluate(tuned, COMPRESSION)
-	told = measured.pop("effects")
+	measured = SeparateYade(PRISM, {"poisson": 0.25}).submit({"young": 50e9, "cohesion": 60e6}, COMPRESSION).result()
+	told, about = measured.pop("effects"), measured.pop("about")
 	assert measured == perform(PRISM, BONDS, COMPRESSION)
 	assert {row["group"] for row in told} == {"bonded spheres"} and "bending" in {row["effect"] for row in told}
+	assert about["node"] == platform.node() and about["seconds"] > 0
 
 
-def test_bad_parameter_comes_back_in_words(tmp_path):
-	"""What the other YADE does, in this one: a request goes in, an answer comes out."""
-	request, answer = tmp_path / "request.json", tmp_path / "answer.json"
-	request.write_text(
-		json.dumps(
-			{
-				"setup": dataclasses.asdict(PRISM),
-				"values": {"cohesion": -1.0},
-				"case": COMPRESSION,
-				"cache": None,
-			}
-		)
-	)
-	virtualtest.answer(request, str(answer))
-	found = json.loads(answer.read_text())
-	assert found["measured"] is None
-	assert found["error"].startswith("ValueError: BondedMat: cohesion = -1 Pa must be positive")
-	assert sorted(os.listdir(tmp_path)) == ["answer.json", "request.json"]
+def test_bad_parameter_comes_back_in_words():
+	with Bench(SeparateYade(PRISM), [COMPRESSION]) as bench:
+		(point, ) = bench.measure([{"cohesion": -1.0}])
+	assert "ValueError: BondedMat: cohesion = -1 Pa must be positive" in point.error
 
 
 @pytest.mark.parametrize("program, message", [
@@ -166,31 +150,6 @@ def test_crash_is_one_failed_evaluation(tmp_path, program, message):
 	with Bench(SeparateYade(PRISM, yade=str(yade)), [COMPRESSION]) as bench:
 		point, = bench.measure([{"young": 50e9}])
 	assert point.error == f"test compression, seed 1: {message}"
-
-
-def test_stop_ends_what_is_running_and_starts_nothing_more(tmp_path):
-	yade = tmp_path / "yade"
-	yade.write_text(f"#!/bin/sh\necho > {tmp_path}/started\nexec sleep infinity\n")
-	yade.chmod(0o755)
-	evaluate = SeparateYade(PRISM, yade=str(yade))
-
-	class Interrupted:
-		"""Two evaluations: one that lasts, and one during which the user presses Ctrl-C."""
-
-		def __call__(self, values, case):
-			if case["seed"] == 1:
-				return evaluate(values, case)
-			until((tmp_path / "started").exists)
-			raise KeyboardInterrupt
-
-		stop = evaluate.stop
-
-	with Bench(Interrupted(), [{"seed": 1}, {"seed": 2}], jobs=2, path=tmp_path / "e") as bench:
-		with pytest.raises(KeyboardInterrupt):
-			bench.measure([{"young": 50e9}])  # returns at all
-	assert (tmp_path / "e").read_text() == ""
-	with pytest.raises(EvaluationError, match="interrupted"):
-		evaluate({"young": 50e9}, COMPRESSION)
 
 
 @pytest.mark.parametrize("model, specimen, changes, message", [

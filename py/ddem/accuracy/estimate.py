@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from yade import DeformableEngine, O, ddem
 
 from .. import meter
-from ..studies import processes
+from ..studies.questions import Questions
 
-RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "estimate_run.py")
 _APART = ("PyRunner", "SnapshotEngine", "VTKRecorder", "TorqueRecorder", "ForceRecorder")  #: engines left out
 
 
@@ -92,7 +91,7 @@ def estimate(until=None, steps=None, bench=2.0):
 	with tempfile.TemporaryDirectory(prefix="ddem-") as folder:
 		scene = os.path.join(folder, "scene.bin")
 		O.save(scene, quiet=True)
-		found = processes.Requests(RUNNER, threads=O.numThreads).ask({"scene": scene, "seconds": bench})
+		found = Questions(__name__, threads=O.numThreads).ask({"scene": scene, "seconds": bench})
 	return Estimate(
 		steps, meter.particles(), "triangle" if engines else "sphere", found["now"], found["strained"],
 		found["memory_MB"],
@@ -105,12 +104,8 @@ def estimate(until=None, steps=None, bench=2.0):
 # ---- in the YADE of the copy ----
 
 
-def answer(request, path):
-	"""What estimate_run.py does."""
-	processes.answer(request, path, _measure)
-
-
-def _measure(asked):
+def measure(asked):
+	"""What the YADE of the copy does: times the steps of a saved scene."""
 	O.load(asked["scene"], quiet=True)
 	O.engines = [engine for engine in O.engines if type(engine).__name__ not in _APART]
 	switches = _switches()

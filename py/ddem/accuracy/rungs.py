@@ -3,14 +3,11 @@
 and what that gave and cost."""
 import importlib.util
 import math
-import os
 import sys
 
-from ..studies import processes
 from ..studies.evaluations import EvaluationError
+from ..studies.questions import Questions
 from .ladders import UCS
-
-RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "rung_run.py")
 
 
 def scene_name(scene):
@@ -118,22 +115,24 @@ class SeparateRung:
 	…} and whose parameters are the settings.
 
 	:param threads: OpenMP threads of each
-	:param yade: see :class:`processes.YadeProcesses`
+	:param workers: :class:`workers.Workers`; None: one after another
+	:param yade: see :class:`questions.Questions`
 	"""
 
-	def __init__(self, threads=1, yade=None):
-		self._requests = processes.Requests(RUNNER, yade, threads)
+	def __init__(self, threads=1, workers=None, yade=None):
+		self._questions = Questions(__name__, workers, yade, threads)
 
-	def __call__(self, values, case):
+	def submit(self, values, case):
+		"""A concurrent.futures.Future of what :func:`perform` returns."""
 		settings = dict(values)
 		threads = settings.pop("threads", None)
-		return self._requests.ask({"scene": case["scene"], "settings": settings}, threads)
+		return self._questions.submit({"scene": case["scene"], "settings": settings}, threads)
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
-		self._requests.stop()
+		self._questions.stop()
 
 
-def answer(request, path):
-	"""What rung_run.py does: run the rung of a request, and write the answer."""
-	processes.answer(request, path, lambda asked: perform(asked["scene"], asked["settings"]))
+def measure(asked):
+	"""What the YADE of a rung does."""
+	return perform(asked["scene"], asked["settings"])

@@ -2,15 +2,14 @@
 """Runs ladders: what has been run is kept, a budget is kept to, and a wanted error is predicted before it is run."""
 import math
 import os
-import platform
 import time
 from dataclasses import dataclass
 
 from yade import config
 
-from ..provenance import processor
 from ..studies.commandline import plugin
 from ..studies.evaluations import Bench
+from ..studies.workers import Here
 from . import convergence, points, rungs
 from .ladders import Ladder, label
 
@@ -24,18 +23,20 @@ class Study:
 	:param ladders: list of :class:`ladders.Ladder`
 	:param folder: where results are kept
 	:param threads: OpenMP threads of every rung
-	:param jobs: rungs at the same time; more than one disturb each other's time
+	:param workers: :class:`workers.Workers` of one node, as times are compared; None: one rung after another.
+		More than one at the same time on a node disturb each other's time
 	:param budget: [s]; a rung that would end later, by what cheaper ones took, is not started. None: no limit
 	:param report: called with a line of text for every rung
 	"""
 
-	def __init__(self, ladders, folder, threads=1, jobs=1, budget=None, report=lambda text: None, evaluate=None):
+	def __init__(self, ladders, folder, threads=1, workers=None, budget=None, report=lambda text: None, evaluate=None):
 		os.makedirs(folder, exist_ok=True)
 		self.ladders, self.budget, self.report = list(ladders), budget, report
-		self.machine = f"{platform.node()}, {processor()}"
+		workers = workers or Here(alike="node")
+		self.machine = workers.machine
 		settings = {"yade": config.version, "plugin": plugin(), "machine": self.machine, "threads": threads}
-		evaluate = evaluate or rungs.SeparateRung(threads)
-		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE), jobs=jobs)
+		evaluate = evaluate or rungs.SeparateRung(threads, workers)
+		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE))
 		self.outcomes = {}  # (ladder's name, number of the rung) -> list of outcomes, one a seed
 		self._took = {}  # (ladder's name, number of the rung) -> wall time of all its seeds [s]
 		self.predictions = []  # of Prediction

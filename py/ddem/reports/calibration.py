@@ -258,7 +258,6 @@ class CalibrationReport:
 				"made": self.bench.ran,
 				"reused": self.bench.reused,
 				"failed": self.bench.failed,
-				"at_the_same_time": self.bench.jobs,
 				"cases_a_point": self.bench.cases,
 				"seconds_added_up": self.bench.seconds,
 				"wall_s": outcome.seconds,

@@ -7,7 +7,9 @@
 :mod:`virtualtest`             tests of a small specimen, in this YADE or each in its own
 :mod:`calibration`             material parameters for wanted strengths; :mod:`calibration_quantities`,
                                :mod:`evaluations`
-:mod:`campaign`                many runs of a script; :mod:`processes`
+:mod:`campaign`                many runs of a script
+:mod:`workers`                 where independent runs go: Dask's workers; :mod:`questions` to a module, each
+                               answered in a YADE of its own (:mod:`yade_process`)
 :mod:`bonded_study`            the study of bonded spheres
 :mod:`esys`                    ESyS-Particle as a peer
 :mod:`structures`              beam, bar and blocks
@@ -18,6 +20,7 @@ from .._lazy import lazy
 
 _MODULES = (
 	"bonded_study", "calibration", "calibration_quantities", "campaign", "commandline", "esys", "evaluations",
-	"measures", "processes", "runs", "snapshots", "structures", "uniaxial", "virtualtest"
+	"measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "workers",
+	"yade_process"
 )
 __getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

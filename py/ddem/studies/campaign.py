@@ -5,28 +5,28 @@ some at the same time; what is finished is kept.
 ::
 
 	cases = [campaign.Case(f"seed{n}", ["--seed", str(n)]) for n in (1, 2, 3)]
-	runs = campaign.Campaign("scripts/ucs_bonded.py", cases, "out/campaign", jobs=2)
-	for case, folder in runs.run().items():
-		...
+	with workers.Workers(jobs=2) as work:
+		runs = campaign.Campaign("scripts/ucs_bonded.py", cases, "out/campaign", work)
+		for case, folder in runs.run().items():
+			...
 
 The script needs an option --out for its folder, and must leave a summary.json there with the versions
-of commandline.versions().
+of commandline.versions(). Workers of a cluster must see the script and the folder under the same paths.
 """
 import concurrent.futures
 import json
 import os
-import shutil
-import time
 from dataclasses import dataclass
 
 from yade import config
 
 from .. import provenance
+from . import yade_process
 from .commandline import plugin
-from .processes import Stopped, YadeProcesses, ending, tail
 
 _SHOWN = 3  # failures that an error shows
 
+LOG = "log.txt"  #: in the folder of a run: what its YADE has said
 FINISHED = "finished.json"  #: in the folder of a run that is finished: what it was made with
 
 
@@ -47,25 +47,23 @@ class Campaign:
 	:param script: path of the script
 	:param cases: list of :class:`Case`, in the order in which they are to start
 	:param folder: where every case gets a folder of its name
-	:param jobs: runs at the same time
+	:param workers: :class:`workers.Workers`
 	:param report: called with case, folder, and seconds (None where it was finished before) when a case is finished
-	:param yade: the program, see :class:`processes.YadeProcesses`
+	:param yade: the program, see :class:`questions.Questions`
 	"""
 
-	def __init__(self, script, cases, folder, jobs=1, report=lambda case, folder, seconds: None, yade=None):
+	def __init__(self, script, cases, folder, workers, report=lambda case, folder, seconds: None, yade=None):
 		names = [case.name for case in cases]
 		if len(set(names)) < len(names):
 			raise ValueError(
 				"two cases have the same name: "
 				f"{', '.join(sorted(name for name in set(names) if names.count(name) > 1))}"
 			)
-		if jobs < 1:
-			raise ValueError(f"jobs = {jobs} must be at least 1")
-		self.script, self.cases, self.folder, self.jobs, self.report = (
-			os.path.abspath(script), list(cases), str(folder), jobs, report
+		self.script, self.cases, self.folder, self.workers, self.report = (
+			os.path.abspath(script), list(cases), os.path.abspath(folder), workers, report
 		)
-		self.processes = YadeProcesses(yade)
-		self._current = {"YADE": config.version, "plugin": plugin()}
+		self.yade = yade or (None if workers.cluster else yade_process.running())
+		self._current = {"YADE": config.version, "plugin": plugin(), "machine": workers.machine}
 
 	def folder_of(self, case):
 		return os.path.join(self.folder, case.name)
@@ -76,7 +74,7 @@ class Campaign:
 			with open(os.path.join(self.folder_of(case), FINISHED)) as file:
 				stamp = json.load(file)
 			stamp.pop(provenance.KEY, None)
-			return stamp == _stamp(case, self._current)
+			return stamp == self._stamp(case)
 		except (OSError, ValueError, AttributeError):
 			return False
 
@@ -91,22 +89,27 @@ class Campaign:
 				self.report(case, self.folder_of(case), None)
 			else:
 				missing.append(case)
-		failures = []
-		pool = concurrent.futures.ThreadPoolExecutor(max_workers=self.jobs)
+		failures, started = [], {}
 		try:
-			started = {pool.submit(self._one, case): case for case in missing}
+			for case in missing:
+				arguments = [*case.arguments, "--out", self.folder_of(case)]
+				future = self.workers.submit(
+					yade_process.run_in_folder, self.script, arguments, self.folder_of(case), LOG,
+					self.yade, self.workers.owner, os.getcwd()
+				)
+				started[future] = case
 			for done in concurrent.futures.as_completed(started):
-				seconds, error = done.result()
-				if error:
-					failures.append(f"{started[done].name}: {error}")
+				case = started[done]
+				try:
+					code, seconds = done.result()
+					self._finish(case, code)
+				except Exception as error:  # its workers died, or it has left nothing
+					failures.append(f"{case.name}: {error}")
 				else:
-					self.report(started[done], self.folder_of(started[done]), seconds)
+					self.report(case, self.folder_of(case), seconds)
 		except BaseException:
-			pool.shutdown(wait=False, cancel_futures=True)
-			self.processes.stop()
+			self.workers.stop()
 			raise
-		finally:
-			pool.shutdown()
 		if failures:
 			more = [f"and {len(failures) - _SHOWN} more"] if len(failures) > _SHOWN else []
 			raise Failed(
@@ -120,29 +123,32 @@ class Campaign:
 			)
 		return {case: self.folder_of(case) for case in self.cases}
 
-	def _one(self, case):
-		"""Seconds it took, and what went wrong or None."""
-		folder, start = self.folder_of(case), time.perf_counter()
-		shutil.rmtree(folder, ignore_errors=True)
-		os.makedirs(folder)
-		log = os.path.join(folder, "log.txt")
-		try:
-			code = self.processes.run(self.script, [*case.arguments, "--out", folder], log)
-		except Stopped as error:
-			return 0.0, str(error)
+	def _finish(self, case, code):
+		"""Mark a run as finished whose script has ended with this exit code.
+
+		:raises RuntimeError: it has failed, or another YADE or plugin has made it
+		"""
+		folder = self.folder_of(case)
 		if code != 0:
-			return 0.0, f"YADE {ending(code)}; its last lines, of {log}: {tail(log)}"
+			log = os.path.join(folder, LOG)
+			raise RuntimeError(
+				f"YADE {yade_process.ending(code)}; its last lines, of {log}: {yade_process.tail(log)}"
+			)
 		try:
-			with open(os.path.join(folder, "summary.json")) as file:
+			with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
 				versions = json.load(file)["versions"]
 		except (OSError, ValueError, KeyError) as error:
-			return 0.0, f"no summary.json that can be read in {folder}: {error}"
+			raise RuntimeError(f"no summary.json that can be read in {folder}: {error}") from None
+		for name in ("YADE", "plugin"):
+			if versions[name] != self._current[name]:
+				raise RuntimeError(
+					f"a worker has {name} {versions[name]} in place of {self._current[name]}: results "
+					"are not mixed; install the same there"
+				)
 		unfinished = os.path.join(folder, FINISHED + ".unfinished")
-		provenance.write_json(unfinished, _stamp(case, versions), indent="\t")
+		provenance.write_json(unfinished, self._stamp(case), indent="\t")
 		os.replace(unfinished, os.path.join(folder, FINISHED))
-		return time.perf_counter() - start, None
 
-
-def _stamp(case, versions):
-	"""What a run depends on."""
-	return {"YADE": versions["YADE"], "plugin": versions["plugin"], "arguments": list(case.arguments)}
+	def _stamp(self, case):
+		"""What a run depends on."""
+		return {**self._current, "arguments": list(case.arguments)}

@@ -15,6 +15,8 @@ import numpy as np
 import yade.config
 from yade import O
 
+from .workers import Workers
+
 _RESTARTED = "YADE_DDEM_RESTARTED"  # set in the environment of a YADE that was started by restart()
 
 
@@ -78,6 +80,28 @@ def add_files(parser, name, what="ParaView files"):
 		metavar="DIR",
 		help="folder for all files, made when missing",
 	)
+
+
+def add_workers(parser, jobs, what, note=""):
+	"""Add the options --jobs, how many of *what* run at the same time here, and --cluster."""
+	parser.add_argument(
+		"--jobs", type=count, default=jobs, metavar="N", help=f"{what} at the same time on this machine{note}"
+	)
+	parser.add_argument(
+		"--cluster", metavar="ADDRESS",
+		help=f"{what} on the workers of the Dask scheduler there, as tcp://node0:8786, in place of this machine"
+	)
+
+
+def workers(parser, options, alike="processor"):
+	"""The :class:`workers.Workers` of these options; complains where the cluster does not answer."""
+	try:
+		found = Workers(options.jobs, options.cluster, alike)
+	except OSError as error:
+		parser.error(f"argument --cluster: {error}")
+	if found.others:
+		print(f"Workers on {found.machine}; those on {', '.join(found.others)} are left alone.", flush=True)
+	return found
 
 
 def require_between(parser, option, values, low, high):

@@ -1,15 +1,16 @@
 # GPL v2 or later, see LICENSE.
-"""Evaluations of a model, several at a time, each written down when it is done: a repeated start does not repeat them.
-Needs no YADE.
+"""Evaluations of a model, each written down when it is done: a repeated start does not repeat them. Needs no YADE.
 
 A *point* is a set of parameters. It is measured in one or several *cases* (kinds of test, seeds),
 each of which is an evaluation of its own::
 
-	with Bench(evaluate, cases=[{"seed": 1}, {"seed": 2}], settings={"specimen": "prism"},
-	path="out/evaluations.jsonl", jobs=2) as bench:
+	cases, settings = [{"seed": 1}, {"seed": 2}], {"specimen": "prism"}
+	with Bench(evaluate, cases, settings, path="out/evaluations.jsonl") as bench:
 		first, second = bench.measure([{"young": 40e9}, {"young": 44e9}])
 		print(first.measured, second.error)
 
+A function is evaluated at once; something with a submit(), as :class:`virtualtest.SeparateYade`, sends its evaluations to
+:mod:`workers`, several at a time.
 The file has a line of JSON an evaluation, with all settings, parameters, and what was measured or went wrong.
 """
 import concurrent.futures
@@ -24,6 +25,7 @@ from dataclasses import dataclass
 
 from .. import provenance
 
+ABOUT = "about"  #: key, beside the measures, of how they were made: "seconds", and "node" and "processor" on which
 EFFECTS = "effects"  #: key, beside the measures, of what the scene simulated (:meth:`effect_table.EffectTable.rows`)
 FORMAT = 1  #: of the lines; evaluations in another format are made again
 
@@ -111,30 +113,24 @@ class Store:
 
 
 class Bench:
-	"""Measures points in all cases, *jobs* evaluations at a time, and keeps every one.
+	"""Measures points in all cases, and keeps every evaluation.
 
 	:param evaluate: ``evaluate(values, case)`` returns a dict of finite measures, and under :data:`EFFECTS`
-		what the scene simulated, or raises; called in threads, so it should start a process for heavy work.
-		Its ``stop()``, where it has one, is called when the run is interrupted, and must end what is running.
+		what the scene simulated, under :data:`ABOUT` how, or raises; or an object whose ``submit(values, case)`` returns a
+		concurrent.futures.Future of that. Its ``stop()`` is called when the run is interrupted, and must end
+		what is running.
 	:param cases: list of dicts that can be written as JSON, as {"test": "compression", "seed": 1}
 	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are
 		not reused
 	:param path: file of a :class:`Store`
-	:param jobs: evaluations at the same time
 	:param budget: no evaluation is started beyond this number of new ones; None: no limit
 	"""
 
-	def __init__(self, evaluate, cases=({}, ), settings=None, path=None, jobs=1, budget=None):
+	def __init__(self, evaluate, cases=({}, ), settings=None, path=None, budget=None):
 		if not cases:
 			raise ValueError("a bench needs at least one case")
-		if not (isinstance(jobs, int) and jobs >= 1):
-			raise ValueError(f"jobs = {jobs!r} must be a whole number, 1 or more")
-		self.evaluate, self.cases, self.settings, self.jobs, self.budget = (
-			evaluate,
-			[dict(case) for case in cases],
-			dict(settings or {}),
-			jobs,
-			budget,
+		self.evaluate, self.cases, self.settings, self.budget = (
+			evaluate, [dict(case) for case in cases], dict(settings or {}), budget
 		)
 		self.store = Store(path)
 		self.ran = self.failed = 0  #: evaluations made now, and those that failed among them
@@ -155,7 +151,8 @@ class Bench:
 	def measure(self, points):
 		"""Measure points, each a dict parameter -> value, and return a list of :class:`Point`.
 
-		An evaluation that fails makes its point an error, nothing more. The result does not depend on *jobs*.
+		An evaluation that fails makes its point an error, nothing more. The result does not depend on how many
+		are made at the same time.
 
 		:raises OutOfBudget: it would take more new evaluations than are left; none was started
 		"""
@@ -186,59 +183,68 @@ class Bench:
 		return next((record[EFFECTS] for record in records if record.get(EFFECTS)), [])
 
 	def _run(self, jobs):
+		"""Key -> record of evaluations that are made now."""
+		submit = getattr(self.evaluate, "submit", self._at_once)
 		records, running = {}, {}
-		pool = concurrent.futures.ThreadPoolExecutor(max_workers=self.jobs)
+
+		def keep(future):
+			key, begun = running.pop(future)
+			records[key] = self._record(key, *jobs[key], future, time.perf_counter() - begun)
+
 		try:
-			running.update((pool.submit(self._one, key, *job), key) for key, job in jobs.items())
-			for done in concurrent.futures.as_completed(running):
-				record = done.result()
-				self.store.add(record)
-				records[record["key"]] = record
-				self._made.add(record["key"])
-				self.ran, self.seconds, self.failed = (
-					self.ran + 1,
-					self.seconds + record["seconds"],
-					self.failed + (record["error"] is not None),
-				)
+			for key, (values, case) in jobs.items():
+				begun = time.perf_counter()
+				future = submit(dict(values), dict(case))
+				running[future] = key, begun
+				if future.done():  # it is kept before the next one is begun
+					keep(future)
+			for future in concurrent.futures.as_completed(list(running)):
+				keep(future)
 		except BaseException:
-			pool.shutdown(wait=False, cancel_futures=True)
-			done = [
-				future
-				for future, key in running.items()
-				if key not in records and future.done() and not future.cancelled()
-			]
+			done = [future for future in running if future.done() and not future.cancelled()]
 			getattr(self.evaluate, "stop", lambda: None)()
 			for future in done:
 				if future.exception() is None:
-					self.store.add(future.result())
+					keep(future)
 			raise
-		finally:
-			pool.shutdown()
 		return records
 
-	def _one(self, key, values, case):
+	def _at_once(self, values, case):
+		future = concurrent.futures.Future()
+		try:
+			future.set_result(self.evaluate(values, case))
+		except Exception as error:
+			future.set_exception(error)
+		return future
+
+	def _record(self, key, values, case, future, waited):
+		"""Write down what an evaluation gave, and return that."""
 		record = {
 			"format": FORMAT, "key": key, "case": case, "parameters": values, "settings": self.settings,
 			"measured": None, "error": None
 		}
-		start = time.perf_counter()
+		about = {}
 		try:
-			answer = self.evaluate(dict(values), dict(case))
-			measured = {name: float(value) for name, value in answer.items() if name != EFFECTS}
+			answer = dict(future.result())
+			about = answer.pop(ABOUT, about)
+			record.update({EFFECTS: answer.pop(EFFECTS)} if EFFECTS in answer else {})
+			measured = {name: float(value) for name, value in answer.items()}
 			wrong = [f"{name} = {value}" for name, value in measured.items() if not math.isfinite(value)]
 			if wrong:
 				raise ValueError(f"measured {', '.join(wrong)}")
 			record["measured"] = measured
-			if EFFECTS in answer:
-				record[EFFECTS] = answer[EFFECTS]
+		except EvaluationError as error:
+			record["error"] = str(error)
 		except Exception as error:
-			record["error"] = (
-				f"{type(error).__name__}: {error}"
-				if not isinstance(error, EvaluationError)
-				else str(error)
-			)
-		record["seconds"] = round(time.perf_counter() - start, 3)
+			record["error"] = f"{type(error).__name__}: {error}"
+		record["seconds"] = round(waited, 3)
+		record.update(about)
 		record["finished"] = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+		self.store.add(record)
+		self._made.add(key)
+		self.ran += 1
+		self.seconds += record["seconds"]
+		self.failed += record["error"] is not None
 		return record
 
 	def _point(self, values, known):

@@ -13,15 +13,13 @@ or each in a YADE of its own, several at the same time, with :class:`SeparateYad
 """
 import dataclasses
 import math
-import os
 
 from .. import packing
-from . import processes
 from .evaluations import EFFECTS, EvaluationError
+from .questions import Questions
 
 ROWS = 4000  #: records up to the largest strain, so that a peak at a twentieth of it is met within 0.5 %
 ENERGY_ERROR = 0.05  #: an evaluation whose energy book is off by more is no measurement
-RUNNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "virtualtest_run.py")
 
 _RIGID = ("radii", "fails", "held", "viscosity", "wall_factor", "convention")  # settings that only this model has
 _DEFORMABLE = ("size", "mesh", "rotation", "flow_interval")
@@ -272,23 +270,26 @@ class SeparateYade:
 	:param setup: :class:`Setup`
 	:param fixed: attribute -> value of the material, what is not tuned
 	:param cache: folder where packings are kept
-	:param yade: the program; None: the one that is running, or that is found in the path
+	:param workers: :class:`workers.Workers`; None: one after another
+	:param yade: see :class:`questions.Questions`
 	"""
 
-	def __init__(self, setup, fixed=None, cache=None, yade=None):
+	def __init__(self, setup, fixed=None, cache=None, workers=None, yade=None):
 		self.setup, self.fixed, self.cache = setup, dict(fixed or {}), cache
-		self._requests = processes.Requests(RUNNER, yade)
+		self._questions = Questions(__name__, workers, yade)
 
 	def settings(self):
 		"""What a result depends on beside the tuned parameters, as plain data:
-		specimen, test, fixed parameters, and the plugin."""
+		specimen, test, fixed parameters, plugin, and machine."""
 		from yade import config
 
 		from .commandline import plugin
-		return {**self.setup.plain(), "fixed": self.fixed, "yade": config.version, "plugin": plugin()}
+		made = {"yade": config.version, "plugin": plugin(), "machine": self._questions.workers.machine}
+		return {**self.setup.plain(), "fixed": self.fixed, **made}
 
-	def __call__(self, values, case):
-		return self._requests.ask(
+	def submit(self, values, case):
+		"""A concurrent.futures.Future of what is measured."""
+		return self._questions.submit(
 			{
 				"setup": dataclasses.asdict(self.setup),
 				"values": {**self.fixed, **values},
@@ -299,18 +300,13 @@ class SeparateYade:
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
-		self._requests.stop()
+		self._questions.stop()
 
 
-def answer(request, path):
-	"""What the YADE of an evaluation does: perform the test of a request, and write measures or an error. Called by
-	virtualtest_run.py."""
-
-	def measure(asked):
-		setup = asked["setup"]
-		setup["radii"] = setup["radii"] and tuple(setup["radii"])
-		measured = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
-		from ..effect_table import effects
-		return {**measured, EFFECTS: effects().rows()}
-
-	processes.answer(request, path, measure)
+def measure(asked):
+	"""What the YADE of an evaluation does: perform the test of a request, and return measures and effects."""
+	from ..effect_table import effects
+	setup = asked["setup"]
+	setup["radii"] = setup["radii"] and tuple(setup["radii"])
+	measured = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
+	return {**measured, EFFECTS: effects().rows()}

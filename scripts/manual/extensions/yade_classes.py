@@ -37,9 +37,7 @@ READ_ONLY = 2  # a flag of YADE's Attr
 #: what a plain number looks like in C++
 NUMBER = re.compile(r"-?[\d.]+(e-?\d+)?(/[\d.]+)?")
 #: modules without a page: what is not for users, and the parts of a package that shows what they hold as its own
-WITHOUT_PAGE = re.compile(
-	r"yade\.ddem\.(_\w+|mesh\.\w+|studies\.virtualtest_run|accuracy\.\w+_run|verification\.cases.*)"
-)
+WITHOUT_PAGE = re.compile(r"yade\.ddem\.(_\w+|mesh\.\w+|verification\.cases.*)")
 #: stands for the space in ":param width, height:", where Sphinx takes what is before a space for a type
 JOINER = "\u2060"
 #: kinds of objects that a role of the Python domain can mean
