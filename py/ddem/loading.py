@@ -170,13 +170,20 @@ def run(until=None, steps=None, progress=True):
 	left = lambda: first + steps - O.iter if until is None else math.ceil((until - O.time) / O.dt - 1e-9)
 	busy = time.process_time()
 	with tqdm(total=left(), unit="step", disable=None if progress else True) as bar:
+		count = 0 if bar.disable else meter.particles()
 		while left() > 0:
 			bar.total = O.iter - first + left()
 			begin, target, clock = O.iter, O.iter + min(piece, left()), time.perf_counter()
+			spent = time.process_time()
 			if piece == 1:
 				O.step()  # O.run would miss an error that comes before it starts to wait
 			else:
 				O.run(target - begin, True)
+			if not bar.disable:
+				took = time.process_time() - spent
+				bar.set_postfix_str(
+					meter.refined(count, O.iter - begin, took, left(), spent - busy), refresh=False
+				)
 			bar.update(O.iter - begin)
 			if O.iter < target:
 				break  # paused

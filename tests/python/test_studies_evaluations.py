@@ -175,7 +175,7 @@ def test_failed_evaluation_is_an_error_of_its_point_only(tmp_path):
 
 @pytest.mark.parametrize(
 	"answer, text",
-	[({"y": float("nan")}, "measured y = nan"), ({"y": None}, "TypeError"), (None, "AttributeError")],
+	[({"y": float("nan")}, "measured y = nan"), ({"y": None}, "TypeError"), (None, "TypeError")],
 )
 def test_answer_that_is_no_measure_is_an_error(answer, text):
 	with Bench(lambda *_: answer) as bench:

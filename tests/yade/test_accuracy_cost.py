@@ -7,7 +7,7 @@ import pytest
 import script_modules
 
 from yade import O
-from yade.ddem.accuracy import ladders, points, rungs, study
+from yade.ddem.accuracy import ladders, points, prediction, rungs
 from yade.ddem.studies.workers import Here
 
 MINE = '''
@@ -103,4 +103,4 @@ def test_a_ladder_of_each_scene_runs(here):
 		outcome = rungs.perform(rungs.scene_name(ladder.scene), settings)
 		found = points.of_ladder(ladder, [[outcome]] * len(ladder.rungs), name)
 		assert not any(point.failed for point in found), name
-		assert study.predict(found, 1e-9) is None  # all alike: no order
+		assert prediction.predict(found, 1e-9) is None  # all alike: no order

@@ -6,10 +6,14 @@
 :mod:`study`         runs ladders in one folder, within a budget, to a target; :mod:`rungs`: one setting of them
 :mod:`points`        errors, costs and the front; :mod:`convergence`: their arithmetic
 :mod:`sentences`     what the points say; :mod:`figures`, :mod:`page`: what they look like
-:mod:`estimate`      what a run will take, before it is run
+:mod:`prediction`    rungs that nobody has run; :mod:`estimate`: what a run will take, before it is run;
+                     :mod:`scene_cost`: what its steps cost, in a copy of it
 ===================  ============================================================================================
 """
 from .._lazy import lazy
 
-_MODULES = ("convergence", "estimate", "figures", "ladders", "page", "points", "rungs", "sentences", "study")
+_MODULES = (
+	"convergence", "estimate", "figures", "ladders", "page", "points", "prediction", "rungs", "scene_cost",
+	"sentences", "study"
+)
 __getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

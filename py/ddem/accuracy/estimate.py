@@ -1,17 +1,13 @@
 # GPL v2 or later, see LICENSE.
 """What a run will take, before it is run."""
+import dataclasses
 import math
-import os
-import random
-import tempfile
 from dataclasses import dataclass, field
 
 from yade import DeformableEngine, O, ddem
 
 from .. import meter
-from ..studies.questions import Questions
-
-_APART = ("PyRunner", "SnapshotEngine", "VTKRecorder", "TorqueRecorder", "ForceRecorder")  #: engines left out
+from . import ladders, prediction, scene_cost, sentences, study
 
 
 @dataclass(frozen=True)
@@ -21,14 +17,17 @@ class Estimate:
 	particles: int
 	kind: str  # of the particles
 	ns_now: float  # processor time of a step over the particles, in the state that the scene is in [ns]
-	ns_strained: float  # the same where all of it is strained, which laws that rest at first cost in the end [ns]
-	memory_MB: float  # of the process with the scene, YADE included
+	ns_strained: float  # the same where all of it is strained, or half of the bonds have broken [ns]
+	memory_MB: float  # of this process at the end
 	dt: float  # [s]
 	critical: float  # critical time step [s]
 	ruling: int = None  # id of the triangle that rules it, None where there are none
 	place: tuple = None  # where it is [m]
 	effects: dict = field(default_factory=dict)  # switch of a material -> share of the strained step that it costs
 	left_out: tuple = ()  # labels or names of engines that were not measured
+	# of prediction.Prediction, one a quantity of the ladder: errors of this scene, and of one that meets the target
+	expected: tuple = ()
+	needed: tuple = ()
 
 	@property
 	def seconds(self):
@@ -39,11 +38,11 @@ class Estimate:
 	def __str__(self):
 		low, high = self.seconds
 		between = f"{low:.3g}" if high < 1.05 * low else f"{low:.3g} to {high:.3g}"
+		later = "where all is strained" if self.kind == "triangle" else "where half of the bonds have broken"
 		lines = [
 			f"{self.steps} steps of {self.particles} {self.kind}s: {between} core-seconds "
 			f"({meter.nanoseconds(self.ns_now)} a {self.kind}-step now, "
-			f"{meter.nanoseconds(self.ns_strained)} where all is strained), "
-			f"{self.memory_MB:.0f} MB",
+			f"{meter.nanoseconds(self.ns_strained)} {later}), {self.memory_MB:.0f} MB",
 			f"time step {self.dt:.3g} s, {self.dt / self.critical:.2f} of the critical one",
 		]
 		if self.ruling is not None:
@@ -53,29 +52,51 @@ class Estimate:
 		lines += [f"{name} is {100 * share:.0f} % of a strained step" for name, share in self.effects.items()]
 		if self.left_out:
 			lines.append(f"without {', '.join(self.left_out)}")
+		for found in self.expected:
+			lines.append(
+				f"expected error of {found.quantity}: {sentences.per_cent(found.error)}, order {found.order:.2g}"
+				+ ("" if found.settled else ", which has not settled: within a factor of two or three")
+			)
+		for found in self.needed:
+			lines.append(
+				f"{sentences.per_cent(found.error)} in {found.quantity} needs {found.step:.3g}: "
+				f"{sentences.seconds(found.cpu_s)} of processor time, {found.memory_MB:.0f} MB more than YADE"
+			)
 		return "\n".join(lines)
 
 
-def estimate(until=None, steps=None, bench=2.0):
+def estimate(until=None, steps=None, target=None, ladder=None, rung=None, bench=2.0, budget=60.0, fresh=False):
 	"""What a run of the present scene will take: its steps are timed in a copy of it, in a YADE of its own, once as
-	it is and once with all particles moving at random, as they will when the load has reached them; then with each
-	effect of its materials off.
+	it is and once with all particles moving at random, as they will when the load has reached them (spheres: with
+	half of their bonds broken); then with each effect of its materials off. What was measured is kept,
+	see :mod:`scene_cost`.
 
 	::
 
 		print(ddem.estimate(until=1e-3))
 		ddem.run(until=1e-3)
 
+	Where the scene belongs to a ladder, its error is expected by the order that cheaper rungs show, which are run
+	where they have not been::
+
+		print(ddem.estimate(until=1e-3, ladder="cantilever", rung={"size": 0.005}, target=0.01))
+
 	:param until: time to run to [s]; or
 	:param steps: number of steps
-	:param bench: time for each of these measurements together [s]
+	:param ladder: :class:`ladders.Ladder`, or the name of one of ``accuracy_cost.py``, that refines something
+	:param rung: the settings of it that this scene has
+	:param target: error that is wanted [-]; says what that needs
+	:param bench: time for the measurement of the steps [s]
+	:param budget: time for rungs of the ladder that have not been run [s]
+	:param fresh: time the steps also where they have been
 	:returns: :class:`Estimate`
-	:raises ValueError: neither or both of them, a time that has passed, no time step
-	:raises evaluations.EvaluationError: the copy does not run
+	:raises ValueError: neither or both of until and steps, a time that has passed, no time step; a target without a
+		ladder, a ladder without an order
+	:raises RuntimeError: the copy does not run
 
 	Limits: the number of steps holds for the present O.dt; a :yref:`DeformableTimeStepper` lowers it where
-	triangles are stretched or compressed, and adds steps. Bonds are measured as they hold now.
-	PyRunners and recorders are left out.
+	triangles are stretched or compressed, and adds steps. PyRunners and recorders are left out. What softens or
+	breaks lies between the two times, and so does what spreads through a scene at rest.
 	"""
 	if (until is None) == (steps is None):
 		raise ValueError("give either until= [s] or steps=")
@@ -85,72 +106,53 @@ def estimate(until=None, steps=None, bench=2.0):
 		if not O.time <= until < math.inf:
 			raise ValueError(f"until = {until} s must not lie before the present time, {O.time} s")
 		steps = math.ceil((until - O.time) / O.dt - 1e-9)
+	expected, needed = _errors(target, ladder, rung, budget)
 	engines = [engine for engine in O.engines if isinstance(engine, DeformableEngine)]
 	ruling = min((engine.rulingTriangle() for engine in engines), key=lambda found: found[1], default=None)
 	critical = ruling[1] if engines else ddem.bonded.critical_time_step()
-	with tempfile.TemporaryDirectory(prefix="ddem-") as folder:
-		scene = os.path.join(folder, "scene.bin")
-		O.save(scene, quiet=True)
-		found = Questions(__name__, threads=O.numThreads).ask({"scene": scene, "seconds": bench})
+	found = scene_cost.measured(bench, fresh)
+	grown = found["grown_MB"] if O.iter == 0 else 0.0
 	return Estimate(
-		steps, meter.particles(), "triangle" if engines else "sphere", found["now"], found["strained"],
-		found["memory_MB"],
-		O.dt, critical, ruling and ruling[0], ruling and tuple(O.bodies[ruling[0]].state.pos)[:2],
-		found["effects"],
-		tuple(engine.label or type(engine).__name__ for engine in O.engines if type(engine).__name__ in _APART)
+		steps, meter.particles(), "triangle" if engines else "sphere", found["ns_now"], found["ns_strained"],
+		meter.memory() / 2**20 + grown, O.dt, critical, ruling and ruling[0],
+		ruling and tuple(O.bodies[ruling[0]].state.pos)[:2],
+		{name.partition(":")[2]: share for name, share in found.items() if name.startswith("effect:")},
+		tuple(
+			engine.label or type(engine).__name__
+			for engine in O.engines
+			if type(engine).__name__ in scene_cost.APART
+		),
+		expected, needed
 	)
 
 
-# ---- in the YADE of the copy ----
-
-
-def measure(asked):
-	"""What the YADE of the copy does: times the steps of a saved scene."""
-	O.load(asked["scene"], quiet=True)
-	O.engines = [engine for engine in O.engines if type(engine).__name__ not in _APART]
-	switches = _switches()
-	share = asked["seconds"] / (2 + len(switches))
-	now = _ns(share)
-	memory = meter.memory() / 2**20
-	_agitate()
-	strained = _ns(share)
-	effects = {}
-	for material, name in switches:
-		setattr(material, name, False)
-		effects[f"{name} of {material.label or type(material).__name__}"] = 1 - min(1.0, _ns(share) / strained)
-		setattr(material, name, True)
-	return {"now": now, "strained": strained, "memory_MB": memory, "effects": effects}
-
-
-def _switches():
-	"""Switches of the materials in use that are on."""
-	materials = {body.mat.id: body.mat for body in O.bodies if body and body.mat}
-	return [
-		(material, name)
-		for material in materials.values()
-		for name, value in material.dict().items()
-		if value is True
-	]
-
-
-def _ns(seconds):
-	"""Processor time of a particle-step [ns], from about so many seconds of them."""
-	_cpu(3)  # what is read and allocated at the first step
-	steps = max(5, round(seconds / 3 / max(_cpu(5) / 5, 1e-7)))
-	_cpu(steps)
-	return 1e9 * _cpu(2 * steps) / (2 * steps * meter.particles())
-
-
-def _cpu(steps):
-	"""Processor time of a run [s]."""
-	with meter.StepMeter() as clock:
-		O.run(steps, True)
-	return clock.cpu_s
-
-
-def _agitate():
-	"""Random velocities of a tenth of a metre a second, so that nothing rests."""
-	draw = random.Random(1)
-	for body in O.bodies:
-		if body and not body.state.blockedDOFs.startswith("xy"):
-			body.state.vel = body.state.vel + (draw.uniform(-0.1, 0.1), draw.uniform(-0.1, 0.1), 0)
+def _errors(target, ladder, rung, budget):
+	"""Predictions for a rung of a ladder, and for a target error, one a quantity."""
+	if ladder is None:
+		if target is not None or rung is not None:
+			raise ValueError(
+				"an error is expected by the rungs of a ladder: give ladder= and rung= beside target=, see "
+				"ddem.accuracy.ladders"
+			)
+		return (), ()
+	if isinstance(ladder, str):
+		(ladder, ) = ladders.find(ladder)
+	if rung is None or not ladder.refined:
+		raise ValueError(f"ladder '{ladder.name}': give rung= with the setting that it refines, which must be one")
+	step = ladder.step(rung)
+	coarser = tuple(one for one in ladder.rungs if ladder.step(one) > 1.001 * step)
+	if len(coarser) < 2:
+		raise ValueError(
+			f"ladder '{ladder.name}': an order needs two rungs that are coarser than {ladders.label(rung)}, and "
+			f"there are {len(coarser)}"
+		)
+	work = study.Study(
+		[dataclasses.replace(ladder, rungs=coarser)], scene_cost.cache("rungs"), threads=O.numThreads, budget=budget
+	)
+	points, found, needed = work.run(), [], []
+	for name in dict.fromkeys(point.quantity for point in points):
+		laws = prediction.Laws([point for point in points if point.quantity == name])
+		found.append(laws.at(step))
+		if target is not None:
+			needed.append(laws.reaching(target))
+	return tuple(found), tuple(needed)

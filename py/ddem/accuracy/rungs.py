@@ -11,7 +11,14 @@ from .ladders import UCS
 
 
 def scene_name(scene):
-	"""How a scene is called in files: the name of a case, UCS, or FILE:FUNCTION."""
+	"""How a scene is called in files: the name of a case, UCS, or FILE:FUNCTION.
+
+	:raises ValueError: a function of the running script, which other YADEs would have to run as a whole
+	"""
+	if getattr(scene, "__module__", "") == "__main__":
+		raise ValueError(
+			f"scene {scene.__name__}() is part of the running script; put it into a file of its own and import that"
+		)
 	return scene if isinstance(scene, str) else f"{sys.modules[scene.__module__].__file__}:{scene.__name__}"
 
 

@@ -3,15 +3,15 @@
 import math
 import os
 import time
-from dataclasses import dataclass
 
 from yade import config
 
 from ..studies.commandline import plugin
 from ..studies.evaluations import Bench
 from ..studies.workers import Here
-from . import convergence, points, rungs
+from . import points, rungs
 from .ladders import Ladder, label
+from .prediction import predict
 
 STORE = "rungs.jsonl"  #: in the folder of a study
 _GROWTH = 8.0  #: of the cost from rung to rung, where no two of a ladder have been run
@@ -39,7 +39,7 @@ class Study:
 		self._make = lambda: Bench(evaluate, settings=settings, path=os.path.join(folder, STORE))
 		self.outcomes = {}  # (ladder's name, number of the rung) -> list of outcomes, one a seed
 		self._took = {}  # (ladder's name, number of the rung) -> wall time of all its seeds [s]
-		self.predictions = []  # of Prediction
+		self.predictions = []  # of (ladder, prediction.Prediction, point that was measured)
 		self._began = time.perf_counter()
 
 	def run(self, target=None):
@@ -126,28 +126,3 @@ class Study:
 		self._rung(more, len(more.rungs) - 1)
 		self.predictions.append((more, predicted, self.points(more)[len(more.rungs) - 1]))
 		return more
-
-
-@dataclass(frozen=True)
-class Prediction:
-	"""What a rung that nobody has run will be."""
-	step: float  # of what is refined
-	error: float  # [-]
-	cpu_s: float
-	order: float  # observed, of the error in the step [-]
-
-
-def predict(found, target):
-	"""The coarsest step that reaches a target error, and its cost, by the power laws of the points of one quantity;
-	None where errors do not fall, or a point is good enough already."""
-	good = [p for p in found if not p.failed and p.step is not None and p.error > 0 and math.isfinite(p.error)]
-	if len(good) < 2 or min(p.error for p in good) <= target:
-		return None
-	finest = sorted(good, key=lambda p: p.step)[:2]
-	_, order = convergence.power_law([p.step for p in finest], [p.error for p in finest])
-	_, growth = convergence.power_law([p.step for p in finest], [p.cpu_s for p in finest])
-	if not (order > 0.3 and growth < 0):
-		return None
-	best = finest[0]
-	step = best.step * (target / best.error)**(1 / order)
-	return Prediction(step, target, best.cpu_s * (step / best.step)**growth, order)

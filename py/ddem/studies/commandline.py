@@ -88,7 +88,7 @@ def add_workers(parser, jobs, what, note=""):
 		"--jobs", type=count, default=jobs, metavar="N", help=f"{what} at the same time on this machine{note}"
 	)
 	parser.add_argument(
-		"--cluster", metavar="ADDRESS",
+		"--cluster", default=argparse.SUPPRESS, metavar="ADDRESS",
 		help=f"{what} on the workers of the Dask scheduler there, as tcp://node0:8786, in place of this machine"
 	)
 
@@ -96,7 +96,7 @@ def add_workers(parser, jobs, what, note=""):
 def workers(parser, options, alike="processor"):
 	"""The :class:`workers.Workers` of these options; complains where the cluster does not answer."""
 	try:
-		found = Workers(options.jobs, options.cluster, alike)
+		found = Workers(options.jobs, getattr(options, "cluster", None), alike)
 	except OSError as error:
 		parser.error(f"argument --cluster: {error}")
 	if found.others:
