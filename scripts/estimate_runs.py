@@ -4,8 +4,8 @@
 Run:      scripts/ddem run scripts/estimate_runs.py                (two minutes)
           scripts/ddem run scripts/estimate_runs.py --scene block bonds
 Writes:   a table here, and into out/estimate_runs: estimates.json.
-Expect:   steps exactly; memory within 5 %; processor time within 20 % of the estimate, or of the range where what was at
-          rest is reached by the load, softens or breaks. Times scatter with what else the machine does.
+Expect:   steps exactly; memory within 5 %; processor time within 20 % of the estimate, or of the range where what was
+          at rest is reached by the load, softens or breaks. Times scatter with what else the machine does.
 """
 import os
 import sys
@@ -61,7 +61,9 @@ def line(row):
 
 def read_options():
 	parser = commandline.script_parser("estimate_runs", __doc__.split("\n\n", 1)[0])
-	parser.add_argument("--scene", nargs="+", choices=SCENES, default=list(SCENES), metavar="NAME", help=", ".join(SCENES))
+	parser.add_argument(
+		"--scene", nargs="+", choices=SCENES, default=list(SCENES), metavar="NAME", help=", ".join(SCENES)
+	)
 	parser.add_argument(
 		"--out", default=os.path.join("out", "estimate_runs"), metavar="DIR", help="folder for all files"
 	)

@@ -6,8 +6,10 @@ from ddem.accuracy.prediction import Laws, predict
 
 
 def point(step, error, cpu_s, memory=1.0):
-	return Point("beam", "mesh size", "beam", "deflection", "displacement", "m", f"{step}", {}, step=step, error=error,
-		cost={"cpu_s": cpu_s, "memory_MB": memory})
+	return Point(
+		"beam", "mesh size", "beam", "deflection", "displacement", "m", f"{step}", {}, step=step, error=error,
+		cost={"cpu_s": cpu_s, "memory_MB": memory}
+	)
 
 
 #: error 3 h², processor time h⁻³, memory h⁻²

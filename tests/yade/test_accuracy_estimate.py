@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""What is said of a run before it is run: counts exactly, memory nearly, errors by their order, times by measurement."""
+"""What is said of a run before it is run: counts exactly, memory nearly, errors by their order,
+times by measurement."""
 import importlib
 import json
 import sys
@@ -133,7 +134,10 @@ def test_the_error_is_expected_by_the_order_of_cheaper_rungs(tmp_path, monkeypat
 	({"target": 0.01}, "give ladder= and rung= beside target="), ({"rung": {"size": 1}}, "give ladder="),
 	({"ladder": "beem"}, "no ladder 'beem'"), ({"ladder": "plane_waves"}, "give rung="),
 	({"ladder": "ucs_rotation", "rung": {"rotation": "none"}}, "which must be one"),
-	({"ladder": "plane_waves", "rung": {"size": 0.008}}, "needs two rungs that are coarser than 8 mm, and there are 1"),
+	(
+		{"ladder": "plane_waves", "rung": {"size": 0.008}},
+		"needs two rungs that are coarser than 8 mm, and there are 1",
+	),
 ])
 def test_errors_that_cannot_be_expected(options, message):
 	ddem.append(skewed_mesh(), elastic())

@@ -83,7 +83,8 @@ def test_a_run_says_what_it_cost(capfd):
 
 
 def test_what_a_bar_says_is_refined_by_the_last_steps():
-	"""After 3 s, a hundred steps of 1000 particles took 2 s of which 300 are left: 20 µs a step and particle, 11 s."""
+	"""After 3 s, a hundred steps of 1000 particles took 2 s of which 300 are left:
+	20 µs a step and particle, 11 s."""
 	assert refined(1000, 100, 2.0, 300, 3.0) == "20000 ns a sphere-step, 11 core-seconds in all"
 	assert refined(1000, 0, 2.0, 300, 3.0) == refined(0, 100, 2.0, 300, 3.0) == ""
 

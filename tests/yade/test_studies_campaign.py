@@ -135,7 +135,8 @@ def test_a_run_whose_worker_is_killed_is_made_by_another(tmp_path, yade, started
 	"""The first run of a seed waits to be killed; its YADE dies with its worker, and a second one is started."""
 	program = yade(
 		"mkdir $out/../../tried$2 2>/dev/null || exit_now=1; "
-		"case $2$exit_now in 2) echo $PPID > $out/../../victim; echo $$ > $out/../../orphan; exec sleep infinity;; esac"
+		"case $2$exit_now in 2) echo $PPID > $out/../../victim; echo $$ > $out/../../orphan; exec sleep "
+		"infinity;; esac"
 	)
 	killed = []
 

@@ -126,7 +126,9 @@ def test_known_bonds_are_found_again_in_other_processes(tmp_path):
 
 
 def test_a_yade_of_its_own_gives_the_same():
-	measured = SeparateYade(PRISM, {"poisson": 0.25}).submit({"young": 50e9, "cohesion": 60e6}, COMPRESSION).result()
+	measured = (
+		SeparateYade(PRISM, {"poisson": 0.25}).submit({"young": 50e9, "cohesion": 60e6}, COMPRESSION).result()
+	)
 	told, about = measured.pop("effects"), measured.pop("about")
 	assert measured == perform(PRISM, BONDS, COMPRESSION)
 	assert {row["group"] for row in told} == {"bonded spheres"} and "bending" in {row["effect"] for row in told}

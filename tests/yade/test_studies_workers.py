@@ -86,9 +86,11 @@ def test_a_killed_worker_loses_nothing(tmp_path):
 	"""The evaluation that its worker was at is made by another; those that were made are not made again."""
 	made = tmp_path / "made"
 	yade = program(
-		tmp_path, f"""echo . >> {made}
-		grep -q '"x": 2' $request && mkdir {tmp_path}/tried && {{ echo $PPID > {tmp_path}/victim; exec sleep infinity; }}
-		{says({"y": 1.0})}"""
+		tmp_path,
+		f"""echo . >> {made}
+		grep -q '"x": 2' $request && mkdir {tmp_path}/tried \
+			&& {{ echo $PPID > {tmp_path}/victim; exec sleep infinity; }}
+		{says({"y": 1.0})}""",
 	)
 	with Workers(jobs=2) as work:
 		evaluate = questions.Questions("any", work, yade)
@@ -169,7 +171,9 @@ def cluster(tmp_path_factory):
 		"--scheduler-file", str(place))
 	until(place.exists)
 	address = json.loads(until(lambda: place.read_text()))["address"]
-	nannies = start("worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard", "--memory-limit", "0")
+	nannies = start(
+		"worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard", "--memory-limit", "0"
+	)
 	yield address
 	for process in (nannies, scheduler):
 		process.terminate()
@@ -180,7 +184,11 @@ def cluster(tmp_path_factory):
 def test_a_cluster_gives_what_this_machine_gives(cluster):
 	with Workers(cluster=cluster) as work:
 		assert work.others == [] and work.machine == Workers().machine
-		there = SeparateYade(BLOCK, {"young": 60e9}, workers=work).submit({"strength": 120e6}, COMPRESSION).result()
+		there = (
+			SeparateYade(BLOCK, {"young": 60e9}, workers=work)
+			.submit({"strength": 120e6}, COMPRESSION)
+			.result()
+		)
 	here = SeparateYade(BLOCK, {"young": 60e9}).submit({"strength": 120e6}, COMPRESSION).result()
 	assert {**there, "about": 0, "effects": 0} == {**here, "about": 0, "effects": 0}
 

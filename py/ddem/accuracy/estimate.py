@@ -54,13 +54,17 @@ class Estimate:
 			lines.append(f"without {', '.join(self.left_out)}")
 		for found in self.expected:
 			lines.append(
-				f"expected error of {found.quantity}: {sentences.per_cent(found.error)}, order {found.order:.2g}"
+				(
+					f"expected error of {found.quantity}: {sentences.per_cent(found.error)}, "
+					f"order {found.order:.2g}"
+				)
 				+ ("" if found.settled else ", which has not settled: within a factor of two or three")
 			)
 		for found in self.needed:
 			lines.append(
 				f"{sentences.per_cent(found.error)} in {found.quantity} needs {found.step:.3g}: "
-				f"{sentences.seconds(found.cpu_s)} of processor time, {found.memory_MB:.0f} MB more than YADE"
+				f"{sentences.seconds(found.cpu_s)} of processor time, {found.memory_MB:.0f} MB more "
+				"than YADE"
 			)
 		return "\n".join(lines)
 
@@ -131,23 +135,26 @@ def _errors(target, ladder, rung, budget):
 	if ladder is None:
 		if target is not None or rung is not None:
 			raise ValueError(
-				"an error is expected by the rungs of a ladder: give ladder= and rung= beside target=, see "
-				"ddem.accuracy.ladders"
+				"an error is expected by the rungs of a ladder: give ladder= and rung= beside "
+				"target=, see ddem.accuracy.ladders"
 			)
 		return (), ()
 	if isinstance(ladder, str):
 		(ladder, ) = ladders.find(ladder)
 	if rung is None or not ladder.refined:
-		raise ValueError(f"ladder '{ladder.name}': give rung= with the setting that it refines, which must be one")
+		raise ValueError(
+			f"ladder '{ladder.name}': give rung= with the setting that it refines, which must be one"
+		)
 	step = ladder.step(rung)
 	coarser = tuple(one for one in ladder.rungs if ladder.step(one) > 1.001 * step)
 	if len(coarser) < 2:
 		raise ValueError(
-			f"ladder '{ladder.name}': an order needs two rungs that are coarser than {ladders.label(rung)}, and "
-			f"there are {len(coarser)}"
+			f"ladder '{ladder.name}': an order needs two rungs that are coarser than "
+			f"{ladders.label(rung)}, and there are {len(coarser)}"
 		)
 	work = study.Study(
-		[dataclasses.replace(ladder, rungs=coarser)], scene_cost.cache("rungs"), threads=O.numThreads, budget=budget
+		[dataclasses.replace(ladder, rungs=coarser)], scene_cost.cache("rungs"), threads=O.numThreads,
+		budget=budget
 	)
 	points, found, needed = work.run(), [], []
 	for name in dict.fromkeys(point.quantity for point in points):

@@ -1,6 +1,6 @@
 # GPL v2 or later, see LICENSE.
-"""What a rung that nobody has run will cost, and how far off it will be: power laws of the rungs that were run. Needs no
-YADE."""
+"""What a rung that nobody has run will cost, and how far off it will be: power laws of the rungs that were run.
+Needs no YADE."""
 import math
 from dataclasses import dataclass
 
@@ -30,12 +30,18 @@ class Laws:
 
 	def __init__(self, points):
 		good = sorted(
-			(p for p in points if not p.failed and p.step is not None and math.isfinite(p.error) and p.error > 0),
+			(
+				p
+				for p in points
+				if not p.failed and p.step is not None and math.isfinite(p.error) and p.error > 0
+			),
 			key=lambda p: p.step
 		)
 		self.quantity = points[0].quantity if points else "nothing"
 		if len({p.step for p in good}) < 2:
-			raise ValueError(f"{self.quantity}: an order needs two rungs with an error, and there are {len(good)}")
+			raise ValueError(
+				f"{self.quantity}: an order needs two rungs with an error, and there are {len(good)}"
+			)
 		self.best = good[0]
 		self.order = self._exponent(good[:2], lambda p: p.error)
 		self._growth = self._exponent(good[:2], lambda p: p.cpu_s)
@@ -64,7 +70,8 @@ class Laws:
 
 
 def predict(points, target):
-	"""The coarsest rung that reaches a target error; None where errors do not fall, or one is good enough already."""
+	"""The coarsest rung that reaches a target error; None where errors do not fall,
+	or one is good enough already."""
 	try:
 		laws = Laws(points)
 	except ValueError:

@@ -17,7 +17,8 @@ def scene_name(scene):
 	"""
 	if getattr(scene, "__module__", "") == "__main__":
 		raise ValueError(
-			f"scene {scene.__name__}() is part of the running script; put it into a file of its own and import that"
+			f"scene {scene.__name__}() is part of the running script; put it into a file of its own and "
+			"import that"
 		)
 	return scene if isinstance(scene, str) else f"{sys.modules[scene.__module__].__file__}:{scene.__name__}"
 

@@ -1,9 +1,9 @@
 # GPL v2 or later, see LICENSE.
 """What the steps of the present scene cost, measured in a copy of it in a YADE of its own, and kept for the next time.
 
-Kept in the cache, in ``yade-ddem/steps.jsonl`` below $XDG_CACHE_HOME or ~/.cache, under the machine's name, the plugin and
-all that the cost depends on: kinds of particles, effects, settings of the engines, threads, and the number of particles
-within a tenth.
+Kept in the cache, in ``yade-ddem/steps.jsonl`` below $XDG_CACHE_HOME or ~/.cache, under the machine's name, the plugin
+and all that the cost depends on: kinds of particles, effects, settings of the engines, threads, and the number of
+particles within a tenth.
 """
 import math
 import os
@@ -32,9 +32,9 @@ def measured(seconds, fresh=False):
 
 	:param seconds: time for the measurement [s]
 	:param fresh: measure it also where it is known
-	:returns: ns_now and ns_strained [ns], processor time of a step over the particles, as the scene is and where all
-		of it is strained (spheres: half of their bonds have broken); grown_MB, memory that the first steps take;
-		effect:NAME, the share of a strained step that each switch of a material costs [-]
+	:returns: ns_now and ns_strained [ns], processor time of a step over the particles, as the scene is and where
+		all of it is strained (spheres: half of their bonds have broken); grown_MB, memory that the first steps
+		take; effect:NAME, the share of a strained step that each switch of a material costs [-]
 	:raises RuntimeError: the copy does not run
 	"""
 	evaluate = _Copy(seconds)
@@ -60,7 +60,12 @@ class _Copy:
 		from ..studies.workers import Here
 		from ..studies.yade_process import identity
 		versions = {name: identity()[name] for name in ("yade", "plugin")}
-		return {"machine": Here(alike="node").machine, "threads": O.numThreads, "seconds": self._seconds, **versions}
+		return {
+			"machine": Here(alike="node").machine,
+			"threads": O.numThreads,
+			"seconds": self._seconds,
+			**versions,
+		}
 
 	def submit(self, values, case):
 		with tempfile.TemporaryDirectory(prefix="ddem-") as folder:
@@ -74,10 +79,14 @@ class _Copy:
 def _composition():
 	"""What the cost of a step depends on."""
 	groups = [
-		[row["group"], row["effect"], row["runs"], row["why"], _size(row["count"])] for row in ddem.effects().rows()
+		[row["group"], row["effect"], row["runs"], row["why"], _size(row["count"])]
+		for row in ddem.effects().rows()
 	]
 	engines = [
-		[type(engine).__name__, sorted((k, str(v)) for k, v in engine.dict().items() if isinstance(v, (bool, str)))]
+		[
+			type(engine).__name__,
+			sorted((k, str(v)) for k, v in engine.dict().items() if isinstance(v, (bool, str))),
+		]
 		for engine in O.engines
 		if type(engine).__name__ not in APART
 	]

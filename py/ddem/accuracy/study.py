@@ -29,7 +29,9 @@ class Study:
 	:param report: called with a line of text for every rung
 	"""
 
-	def __init__(self, ladders, folder, threads=1, workers=None, budget=None, report=lambda text: None, evaluate=None):
+	def __init__(
+		self, ladders, folder, threads=1, workers=None, budget=None, report=lambda text: None, evaluate=None
+	):
 		os.makedirs(folder, exist_ok=True)
 		self.ladders, self.budget, self.report = list(ladders), budget, report
 		workers = workers or Here(alike="node")

@@ -142,8 +142,8 @@ class Campaign:
 		for name in ("YADE", "plugin"):
 			if versions[name] != self._current[name]:
 				raise RuntimeError(
-					f"a worker has {name} {versions[name]} in place of {self._current[name]}: results "
-					"are not mixed; install the same there"
+					f"a worker has {name} {versions[name]} in place of {self._current[name]}: "
+					"results are not mixed; install the same there"
 				)
 		unfinished = os.path.join(folder, FINISHED + ".unfinished")
 		provenance.write_json(unfinished, self._stamp(case), indent="\t")

@@ -9,8 +9,8 @@ each of which is an evaluation of its own::
 		first, second = bench.measure([{"young": 40e9}, {"young": 44e9}])
 		print(first.measured, second.error)
 
-A function is evaluated at once; something with a submit(), as :class:`virtualtest.SeparateYade`, sends its evaluations to
-:mod:`workers`, several at a time.
+A function is evaluated at once; something with a submit(), as :class:`virtualtest.SeparateYade`, sends its evaluations
+to :mod:`workers`, several at a time.
 The file has a line of JSON an evaluation, with all settings, parameters, and what was measured or went wrong.
 """
 import concurrent.futures
@@ -116,9 +116,9 @@ class Bench:
 	"""Measures points in all cases, and keeps every evaluation.
 
 	:param evaluate: ``evaluate(values, case)`` returns a dict of finite measures, and under :data:`EFFECTS`
-		what the scene simulated, under :data:`ABOUT` how, or raises; or an object whose ``submit(values, case)`` returns a
-		concurrent.futures.Future of that. Its ``stop()`` is called when the run is interrupted, and must end
-		what is running.
+		what the scene simulated, under :data:`ABOUT` how, or raises; or an object whose ``submit(values,
+		case)`` returns a concurrent.futures.Future of that. Its ``stop()`` is called when the run is
+		interrupted, and must end what is running.
 	:param cases: list of dicts that can be written as JSON, as {"test": "compression", "seed": 1}
 	:param settings: whatever else the result depends on, as plain data; evaluations made with other settings are
 		not reused

@@ -68,8 +68,8 @@ def _checked(found):
 	other = [f"{name} {by[name]} in place of {own[name]}" for name in ("yade", "plugin") if by[name] != own[name]]
 	if other:
 		raise EvaluationError(
-			f"the worker on {by['node']} has {' and '.join(other)}: results are not mixed; install the same "
-			"there"
+			f"the worker on {by['node']} has {' and '.join(other)}: results are not mixed; install the "
+			"same there"
 		)
 	if found["error"] is not None:
 		raise EvaluationError(found["error"])

@@ -8,8 +8,8 @@
 		print([future.result() for future in futures])
 
 Functions are sent with their code, so they must not need the plugin: mostly :func:`yade_process.run` and
-:func:`yade_process.ask`, which start a YADE. A worker that is killed takes its YADE with it, and another one makes what it
-was at; a task whose workers die four times fails.
+:func:`yade_process.ask`, which start a YADE. A worker that is killed takes its YADE with it, and another one makes what
+it was at; a task whose workers die four times fails.
 """
 import collections
 import concurrent.futures
@@ -60,8 +60,8 @@ class Workers:
 	that has most of them.
 
 	:param jobs: processes of this machine, where no cluster is named
-	:param cluster: address of a Dask scheduler, as "tcp://node0:8786"; its workers must be able to start "yade" with
-		this plugin, and see the same files
+	:param cluster: address of a Dask scheduler, as "tcp://node0:8786"; its workers must be able to start "yade"
+		with this plugin, and see the same files
 	:param alike: what makes two machines the same: "processor", for results; "node", for times
 	:raises OSError: no scheduler answers there, or it has no workers within :data:`WAIT`
 	"""

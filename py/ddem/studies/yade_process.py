@@ -1,8 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """A script, or a question to a module of the plugin, in a YADE of its own on the machine that calls this.
 
-Dask sends :func:`run_in_folder` and :func:`ask` to its workers with their code (:mod:`workers`), so that these need no plugin in
-their Python, only the program; both use nothing but the standard library and functions of this file.
+Dask sends :func:`run_in_folder` and :func:`ask` to its workers with their code (:mod:`workers`), so that these need
+no plugin in their Python, only the program; both use nothing but the standard library and functions of this file.
 """
 import functools
 import importlib
