@@ -8,6 +8,7 @@ import subprocess
 import sys
 
 import pytest
+from distributed import Client
 
 from yade.ddem.studies import questions, workers, yade_process
 from yade.ddem.studies.evaluations import Bench, EvaluationError
@@ -160,7 +161,8 @@ def test_results_of_another_plugin_or_yade_are_refused(tmp_path, name, there):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-	"""Address of a scheduler with two workers of one thread each, started as the manual says."""
+	"""Address of a scheduler with workers of one thread each, started as the manual says: two on one address of this
+	machine, one on another."""
 	folder = tmp_path_factory.mktemp("cluster")
 	log = open(folder / "log", "wb")
 	start = lambda *arguments: subprocess.Popen(
@@ -171,11 +173,15 @@ def cluster(tmp_path_factory):
 		"--scheduler-file", str(place))
 	until(place.exists)
 	address = json.loads(until(lambda: place.read_text()))["address"]
-	nannies = start(
-		"worker", address, "--nworkers", "2", "--nthreads", "1", "--no-dashboard", "--memory-limit", "0"
-	)
+	options = ("--nthreads", "1", "--no-dashboard", "--memory-limit", "0", address)
+	nannies = [
+		start("worker", "--host", "127.0.0.1", "--nworkers", "2", *options),
+		start("worker", "--host", "127.0.0.2", *options)
+	]
+	with Client(address) as client:
+		client.wait_for_workers(3)
 	yield address
-	for process in (nannies, scheduler):
+	for process in (*nannies, scheduler):
 		process.terminate()
 		process.wait()
 	log.close()
@@ -209,6 +215,21 @@ def test_stop_ends_only_what_is_one_s_own_on_a_cluster(cluster, tmp_path):
 	until(lambda: gone(pids["other"]))
 	with Workers(cluster=cluster) as work:  # the workers are still there
 		assert work.submit(divmod, 7, 2).result() == (3, 1)
+
+
+def test_results_of_two_machines_are_not_mixed(cluster, monkeypatch):
+	"""The worker on the other address is told to be another machine: nothing is sent there, although it is free."""
+
+	def machines(self):
+		addresses = self._client.scheduler_info()["workers"]
+		return {one: "slow" if "127.0.0.2" in one else "fast" for one in addresses}
+
+	monkeypatch.setattr(Workers, "_machines", machines)
+	with Workers(cluster=cluster) as work:
+		assert (work.machine, work.others) == ("fast", ["slow"])
+		found = [work.submit(os.getpid) for _ in range(12)]
+		there = {pid for address, pid in work.workers.items() if "127.0.0.2" in address}
+		assert there and not there & {future.result() for future in found}
 
 
 def test_a_cluster_that_does_not_answer_is_told(monkeypatch):
