@@ -16,6 +16,17 @@ DDEM_PLUGIN((BondedInteractionLoop))
 
 namespace {
 
+	constexpr long lookInterval = 1000; ///< steps between looks at the time step
+
+	const TimeStepper* activeTimeStepper(const Scene& scene)
+	{
+		for (const auto& engine : scene.engines)
+			if (const auto* stepper = dynamic_cast<const TimeStepper*>(engine.get());
+			    stepper && stepper->active)
+				return stepper;
+		return nullptr;
+	}
+
 	/// Engines that look at no bond.
 	bool neverLooksAtBonds(const Engine& engine)
 	{
@@ -55,6 +66,7 @@ void BondedInteractionLoop::action()
 			locateHeld();
 		}
 	}
+	if (bondLaw) requireStableStep();
 	if (known < 0) {
 		InteractionLoop::action();
 		return;
@@ -62,6 +74,28 @@ void BondedInteractionLoop::action()
 	actOnOthers();
 	const std::lock_guard<std::mutex> lock(busy);
 	advance(*bondLaw);
+}
+
+/// Looks where O.dt has grown or bonds are new, and now and then, since contacts form.
+void BondedInteractionLoop::requireStableStep()
+{
+	if (scene->dt <= stable && scene->iter < nextLook) return;
+	const BondedStableStep bound = Law::criticalTimeStepOf(*scene);
+	if (scene->dt <= bound.step) {
+		stable   = scene->dt;
+		nextLook = scene->iter + lookInterval;
+		return;
+	}
+	stable = 0; // a second try is checked, too
+	std::ostringstream text;
+	text << "O.dt = " << scene->dt << " s is above the critical time step " << bound.step
+	     << " s, set by bodies #" << bound.id1 << " and #" << bound.id2 << " in step " << scene->iter
+	     << "; the simulation would blow up: ";
+	if (const auto* stepper = activeTimeStepper(*scene))
+		text << stepper->getClassName()
+		     << " sets O.dt: lower its timestepSafetyCoefficient, or leave it out and ";
+	text << "set O.dt = ddem.bonded.time_step(0.8)";
+	throw std::runtime_error(text.str());
 }
 
 bool BondedInteractionLoop::locateHeld()
@@ -169,6 +203,7 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 	std::sort(
 	        held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
 
+	stable = 0;
 	system.clear();
 	particles.clear();
 	overloaded.clear();

@@ -41,7 +41,9 @@ public:
 		"with :yref:`callbacks<InteractionLoop.callbacks>`, "
 		":yref:`loopOnSortedInteractions<InteractionLoop.loopOnSortedInteractions>`, a number of threads of "
 		"its own, or periodic boundaries.\n\n"
-		"Errors: RuntimeError naming the bond where forces become infinite or not a number, "
+		"Errors: RuntimeError naming the bond where forces become infinite or not a number; naming the pair "
+		"where O.dt is above the critical step "
+		"(:yref:`criticalTimeStep<Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep>`); "
 		"and under mpirun with several processes."
 	);
 	// clang-format on
@@ -55,6 +57,7 @@ private:
 
 	Law* law() const;
 	bool oneByOne() const;
+	void requireStableStep();
 	bool locateHeld();
 	void actOnOthers();
 	bool act(const shared_ptr<Interaction>& I);
@@ -77,6 +80,8 @@ private:
 	long                                  known  = -1; ///< BondedPhys::bondsMade when they were collected
 	const Scene*                          knownScene = nullptr;
 	bool                                  exposed = true;
+	Real                                  stable   = 0; ///< time step that was last found stable [s]
+	long                                  nextLook = 0; ///< step of the next look at it
 	SingleProcess                         process;
 	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written
 	                                                       ///< back: Python may ask at any time

@@ -10,6 +10,41 @@ DDEM_PLUGIN((BondedPhys))
 
 std::atomic<long> BondedPhys::bondsMade { 0 };
 
+shared_ptr<BondedPhys> BondedPhys::contact(const BondedMat& a, const BondedMat& b, Real reach)
+{
+	auto phys             = boost::make_shared<BondedPhys>();
+	phys->young           = 2 * a.young * b.young / (a.young + b.young); // two halves in series
+	phys->poisson         = (a.poisson + b.poisson) / 2;
+	phys->cohesion        = math::min(a.cohesion, b.cohesion);
+	phys->tanBondFriction = math::min(a.strength().frictionCoefficient, b.strength().frictionCoefficient);
+	phys->tensileStrength = math::min(a.tensileStrength, b.tensileStrength);
+	phys->frictionStatic  = math::min(a.frictionStatic, b.frictionStatic);
+	phys->frictionDynamic = math::min(a.frictionDynamic, b.frictionDynamic);
+	phys->gradualFriction = a.gradualFriction || b.gradualFriction;
+	phys->normalDamping   = (a.normalDamping + b.normalDamping) / 2;
+	phys->shearDamping    = (a.shearDamping + b.shearDamping) / 2;
+	phys->contactReach    = reach;
+	phys->tangensOfFrictionAngle = phys->frictionStatic;
+	phys->setContactStiffness();
+	return phys;
+}
+
+Real BondedPhys::reachOf(const Interaction& I)
+{
+	if (I.geom->getClassName() == "ScGridCoGeom") // forces on a grid's connection belong to its nodes
+		throw std::runtime_error(
+		        "bodies #" + std::to_string(I.getId1()) + " and #" + std::to_string(I.getId2())
+		        + ": BondedMat has no contact with grid connections and PFacets; give these bodies another "
+		          "mask, or use Facet");
+	const auto& geom     = static_cast<const ScGeom&>(*I.geom);
+	const auto  isSphere = [](Body::id_t id) {
+                return dynamic_cast<const Sphere*>(Body::byId(id)->shape.get()) != nullptr;
+	};
+	const bool sphere1 = isSphere(I.getId1()), sphere2 = isSphere(I.getId2());
+	if (sphere1 == sphere2) return geom.radius1 + geom.radius2;
+	return 2 * (sphere1 ? geom.radius1 : geom.radius2);
+}
+
 void BondedPhys::join(const State& state1, const State& state2, const Vector3r& branch)
 {
 	const Real                length = branch.norm();
@@ -25,6 +60,8 @@ void BondedPhys::join(const State& state1, const State& state2, const Vector3r& 
 	ks         = stiffness.shear;
 	kb         = stiffness.bending;
 	kt         = stiffness.torsion;
+	kr         = kb;
+	ktw        = kt;
 	frame1     = ddem::eigenQuaternion(made.frame1);
 	frame2     = ddem::eigenQuaternion(made.frame2);
 	bondsMade++;
@@ -33,6 +70,7 @@ void BondedPhys::join(const State& state1, const State& state2, const Vector3r& 
 void BondedPhys::part(Real reach)
 {
 	bonded       = false;
+	kr = ktw     = 0;
 	normalStress = shearStress = 0;
 	sliding                    = false;
 	contactNormal = contactShear = viscousShear = Vector3r::Zero();
@@ -57,7 +95,8 @@ ddem::Bond BondedPhys::bond(const ScGeom& geom) const
 ddem::ContactDamping BondedPhys::contactDamping(Real mass1, Real mass2) const
 {
 	if (normalDamping == 0 && shearDamping == 0) return {};
-	const Real reduced = mass1 * mass2 / (mass1 + mass2);
+	// bodies that nothing moves have no mass, as facets, or stand for an infinite one
+	const Real reduced = mass1 > 0 && mass2 > 0 ? mass1 * mass2 / (mass1 + mass2) : math::max(mass1, mass2);
 	return { 2 * normalDamping * math::sqrt(reduced * kn), 2 * shearDamping * math::sqrt(reduced * ks) };
 }
 

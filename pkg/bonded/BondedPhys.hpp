@@ -8,10 +8,15 @@
 
 namespace yade {
 
-class BondedPhys : public NormShearPhys {
+class BondedPhys : public RotStiffFrictPhys {
 public:
 	virtual ~BondedPhys() = default;
 
+	/// A contact between two materials. \param reach sum of the radii [m], see reachOf
+	static shared_ptr<BondedPhys> contact(const BondedMat& a, const BondedMat& b, Real reach);
+	/// Sum of the radii of an interaction [m], which sets its springs.
+	/// What is no sphere counts as the sphere's image.
+	static Real reachOf(const Interaction& I);
 	/// Joins the two particles as they are now. \param branch from the centre of particle 1 to that of 2 [m]
 	void join(const State& state1, const State& state2, const Vector3r& branch);
 	/// Leaves a frictional contact in place of the bond. \param reach distance of the centres
@@ -33,10 +38,11 @@ public:
 	void                     postLoad(BondedPhys&) { bondsMade++; }
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BondedPhys, NormShearPhys,
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BondedPhys, RotStiffFrictPhys,
 		"Interaction of two particles of :yref:`BondedMat`: an elastic bond while *bonded*, else a frictional "
 		"contact. :yref:`kn<NormPhys.kn>` and :yref:`ks<NormShearPhys.ks>` [N/m] are those of the bond or of "
-		"the contact, whichever acts.",
+		"the contact, whichever acts; :yref:`kr<RotStiffFrictPhys.kr>` and :yref:`ktw<RotStiffFrictPhys.ktw>` "
+		"are *kb* and *kt* while the bond holds, for YADE's :yref:`GlobalStiffnessTimeStepper`.",
 		((bool,bonded,false,Attr::readonly,"Whether the bond holds"))
 		((bool,sliding,false,Attr::readonly,
 			"Whether the contact has slipped before, so that dynamic friction applies"))
@@ -81,7 +87,7 @@ public:
 		createIndex();
 	);
 	// clang-format on
-	REGISTER_CLASS_INDEX(BondedPhys, NormShearPhys);
+	REGISTER_CLASS_INDEX(BondedPhys, RotStiffFrictPhys);
 };
 REGISTER_SERIALIZABLE(BondedPhys);
 

@@ -100,11 +100,12 @@ void Ip2_ElasticWallMat_BondedMat_ElasticWallPhys::bond(int wall, const std::vec
 
 bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
-	// The wall is always the first body of a wall-sphere geometry, and the normal points from
-	// it to the sphere's side.
+	// What is no sphere is always the first body of a geometry with one,
+	// and the normal points from it to the sphere.
 	const auto&    geom   = static_cast<const ScGeom&>(*iGeom);
 	auto&          phys   = static_cast<ElasticWallPhys&>(*iPhys);
-	const Vector3r branch = Body::byId(I->getId2(), scene)->state->pos - Body::byId(I->getId1(), scene)->state->pos;
+	const Body&    wall   = *Body::byId(I->getId1(), scene);
+	const Vector3r branch = Body::byId(I->getId2(), scene)->state->pos - wall.state->pos;
 	Real           stored = 0;
 	if (phys.bonded) {
 		const Vector3r displacement = branch - phys.bondedBranch;
@@ -115,8 +116,10 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 		phys.shearForce             = force - phys.normalForce;
 		stored                      = -0.5 * force.dot(displacement);
 	} else {
-		const Real distance = geom.normal.dot(branch),
-		           force = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
+		// Behind a wall the distance is negative; a box or a facet has no behind.
+		const bool isWall = wall.shape->getClassIndex() == Wall::getClassIndexStatic();
+		const Real distance = isWall ? geom.normal.dot(branch) : geom.radius2 - geom.penetrationDepth,
+		           force    = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
 		if (!(force > 0)) return false;
 		stored = 0.5 * force * (geom.radius2 - distance);
@@ -124,6 +127,8 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 	const Vector3r force = phys.normalForce + phys.shearForce;
 	scene->forces.addForce(I->getId1(), -force);
 	scene->forces.addForce(I->getId2(), force);
+	if (wall.shape->getClassIndex() != Wall::getClassIndexStatic()) // a wall does not turn
+		scene->forces.addTorque(I->getId1(), (geom.contactPoint - wall.state->pos).cross(-force));
 	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::WallElastic, stored);
 	return true;
 }

@@ -7,28 +7,9 @@
 
 namespace yade {
 
-DDEM_PLUGIN((Ip2_BondedMat_BondedMat_BondedPhys))
+DDEM_PLUGIN((Ip2_BondedMat_BondedMat_BondedPhys)(Ip2_FrictMat_BondedMat_BondedPhys))
 
 namespace {
-
-	/// A contact between two materials whose spheres have these radii [m].
-	shared_ptr<BondedPhys> makeContact(const BondedMat& a, const BondedMat& b, Real radius1, Real radius2)
-	{
-		auto phys             = boost::make_shared<BondedPhys>();
-		phys->young           = 2 * a.young * b.young / (a.young + b.young); // two halves in series
-		phys->poisson         = (a.poisson + b.poisson) / 2;
-		phys->cohesion        = math::min(a.cohesion, b.cohesion);
-		phys->tanBondFriction = math::min(a.strength().frictionCoefficient, b.strength().frictionCoefficient);
-		phys->tensileStrength = math::min(a.tensileStrength, b.tensileStrength);
-		phys->frictionStatic  = math::min(a.frictionStatic, b.frictionStatic);
-		phys->frictionDynamic = math::min(a.frictionDynamic, b.frictionDynamic);
-		phys->gradualFriction = a.gradualFriction || b.gradualFriction;
-		phys->normalDamping   = (a.normalDamping + b.normalDamping) / 2;
-		phys->shearDamping    = (a.shearDamping + b.shearDamping) / 2;
-		phys->contactReach    = radius1 + radius2;
-		phys->setContactStiffness();
-		return phys;
-	}
 
 	struct Particle {
 		Body*            body;
@@ -93,10 +74,24 @@ void Ip2_BondedMat_BondedMat_BondedPhys::go(
         const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
-	const auto& geom  = static_cast<const ScGeom&>(*interaction->geom);
-	interaction->phys = makeContact(
-	        static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2), geom.radius1,
-	        geom.radius2);
+	interaction->phys = BondedPhys::contact(
+	        static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2),
+	        BondedPhys::reachOf(*interaction));
+}
+
+void Ip2_FrictMat_BondedMat_BondedPhys::go(
+        const shared_ptr<Material>& material1, const shared_ptr<Material>& material2,
+        const shared_ptr<Interaction>& interaction)
+{
+	if (interaction->phys) return;
+	const auto* bonded = dynamic_cast<const BondedMat*>(material1.get()); // they come in either order
+	const auto& other  = static_cast<const FrictMat&>(bonded ? *material2 : *material1);
+	if (!bonded) bonded = static_cast<const BondedMat*>(material2.get());
+	BondedMat like       = *bonded;
+	like.young           = other.young;
+	like.frictionStatic  = math::tan(other.frictionAngle);
+	like.frictionDynamic = like.frictionStatic;
+	interaction->phys    = BondedPhys::contact(like, *bonded, BondedPhys::reachOf(*interaction));
 }
 
 void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs)
@@ -121,7 +116,7 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 		if (const auto old = current.interactions->find(first, second))
 			current.interactions->erase(first, second, old->linIx);
 		auto interaction  = boost::make_shared<Interaction>(first, second);
-		auto phys         = makeContact(*a.material, *b.material, a.sphere->radius, b.sphere->radius);
+		auto phys         = BondedPhys::contact(*a.material, *b.material, a.sphere->radius + b.sphere->radius);
 		interaction->geom = makeGeometry(a, b, current, interaction);
 		interaction->phys = phys;
 		phys->join(*a.body->state, *b.body->state, b.body->state->pos - a.body->state->pos);

@@ -31,4 +31,22 @@ public:
 };
 REGISTER_SERIALIZABLE(Ip2_BondedMat_BondedMat_BondedPhys);
 
+class Ip2_FrictMat_BondedMat_BondedPhys : public IPhysFunctor {
+public:
+	virtual ~Ip2_FrictMat_BondedMat_BondedPhys() = default;
+	void go(const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&) override;
+
+	FUNCTOR2D(FrictMat, BondedMat);
+	// clang-format off
+	YADE_CLASS_BASE_DOC(Ip2_FrictMat_BondedMat_BondedPhys, IPhysFunctor,
+		"Makes :yref:`BondedPhys` of a :yref:`FrictMat` and a :yref:`BondedMat`: a frictional contact, so that "
+		"steel balls, boxes and facets of machines meet bonded rock. Young's modulus is the harmonic mean of "
+		"both, friction the lower of :yref:`frictionAngle<FrictMat.frictionAngle>` and that of the bonded "
+		"particle. Poisson's ratio and damping are the bonded particle's: what FrictMat calls "
+		":yref:`poisson<ElastMat.poisson>` is a ratio of springs."
+	);
+	// clang-format on
+};
+REGISTER_SERIALIZABLE(Ip2_FrictMat_BondedMat_BondedPhys);
+
 } // namespace yade

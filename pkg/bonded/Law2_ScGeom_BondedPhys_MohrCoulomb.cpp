@@ -79,11 +79,11 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 	const ddem::BondLoads loads = ddem::bondLoads(
 	        bondConvention(), phys.bond(geom), ddem::spaceVector(branch), ddem::rotation(state1.ori),
 	        ddem::rotation(state2.ori));
-	const Real touching = geom.radius1 + geom.radius2;
+	const Real reach = geom.radius1 + geom.radius2;
 	// Where particles were bonded with an overlap it bears no load, before and after the bond breaks;
 	// ESyS-Particle's rest length is always the sum of the radii.
-	phys.part(esys ? touching : math::min(touching, phys.bondLength));
-	const ddem::ContactLoads contact = contactLoadsOf(geom, phys, state1, state2, branch);
+	phys.part(esys ? reach : math::min(reach, phys.bondLength));
+	const ddem::ContactLoads contact = contactLoadsOf(I);
 
 	auto parted          = boost::make_shared<BrokenBond>();
 	parted->id1          = std::min(I.getId1(), I.getId2());
@@ -104,25 +104,53 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 	        + 0.5 * scene->dt * (bondPower - contactPower);
 	record(parted);
 	applyContact(I, contact);
-	return branch.norm() < touching;
+	return touching(I);
 }
 
-ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
-        const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2, const Vector3r& branch) const
+bool Law2_ScGeom_BondedPhys_MohrCoulomb::touching(const Interaction& I) const
 {
-	const Real                distance = branch.norm(), share = phys.contactReach / (geom.radius1 + geom.radius2);
-	const Vector3r            normal = branch / distance;
-	const ddem::ContactMotion motion {
-		normal,        distance,     share * geom.radius1, share * geom.radius2, state2.vel - state1.vel,
-		state1.angVel, state2.angVel
-	};
+	const auto& geom = static_cast<const ScGeom&>(*I.geom);
+	if (!isSphere(I.getId1()) || !isSphere(I.getId2())) return geom.penetrationDepth > 0;
+	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the
+	// spheres touch, or a new contact would know nothing of that.
+	return branchOf(I).norm() < geom.radius1 + geom.radius2;
+}
+
+bool Law2_ScGeom_BondedPhys_MohrCoulomb::isSphere(Body::id_t id) const
+{
+	const Shape& shape = *Body::byId(id, scene)->shape;
+	return shape.getClassIndex() == Sphere::getClassIndexStatic() || dynamic_cast<const Sphere*>(&shape);
+}
+
+ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Interaction& I)
+{
+	const auto&    geom   = static_cast<const ScGeom&>(*I.geom);
+	auto&          phys   = static_cast<BondedPhys&>(*I.phys);
+	const State &  state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
+	const bool     sphere1 = isSphere(I.getId1()), sphere2 = isSphere(I.getId2()), spheres = sphere1 && sphere2;
+	const Real     share = spheres ? phys.contactReach / (geom.radius1 + geom.radius2) : 1,
+	               radius1 = sphere1 ? share * geom.radius1 : 0, radius2 = sphere2 ? share * geom.radius2 : 0;
+	const Vector3r branch   = branchOf(I);
+	const Real     distance = spheres ? branch.norm() : radius1 + radius2 - geom.penetrationDepth;
+	const Vector3r normal   = spheres ? Vector3r(branch / distance) : geom.normal;
+	// of other shapes: the surface at the contact, which a periodic image of body 2 has elsewhere
+	const Vector3r shift = scene->isPeriodic ? scene->cell->intrShiftPos(I.cellDist) : Vector3r::Zero();
+	const Vector3r arm1 = geom.contactPoint - state1.pos, arm2 = geom.contactPoint - state2.pos - shift;
+	const Vector3r velocity1 = sphere1 ? state1.vel : Vector3r(state1.vel + state1.angVel.cross(arm1));
+	Vector3r       velocity2 = sphere2 ? state2.vel : Vector3r(state2.vel + state2.angVel.cross(arm2));
+	if (scene->isPeriodic) velocity2 += scene->cell->intrShiftVel(I.cellDist);
+
+	const ddem::ContactMotion motion { normal,        distance,     radius1, radius2, velocity2 - velocity1,
+		                           state1.angVel, state2.angVel };
 	ddem::ContactMemory memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
 		                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
-	const ddem::ContactLoads  loads = esys
-	         ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
-	         : ddem::contactLoads(
-	                 { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
-	                 phys.contactDamping(state1.mass, state2.mass));
+	ddem::ContactLoads        loads = esys
+	               ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
+	               : ddem::contactLoads(
+	                       { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
+	                       phys.contactDamping(state1.mass, state2.mass));
+	if (!sphere1) loads.moment1 = arm1.cross(loads.force);
+	if (!sphere2) loads.moment2 = -arm2.cross(loads.force);
 	phys.contactNormal  = memory.normal;
 	phys.contactShear   = memory.shear;
 	phys.contactForce   = memory.force;
@@ -137,13 +165,8 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
 {
-	const auto&    geom   = static_cast<const ScGeom&>(*I.geom);
-	const State &  state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
-	const Vector3r branch = branchOf(I);
-	applyContact(I, contactLoadsOf(geom, static_cast<BondedPhys&>(*I.phys), state1, state2, branch));
-	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the
-	// spheres touch, or a new contact would know nothing of that.
-	return branch.norm() < geom.radius1 + geom.radius2;
+	applyContact(I, contactLoadsOf(I));
+	return touching(I);
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(
@@ -276,13 +299,13 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 	return result;
 }
 
-Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
+BondedStableStep Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStepOf(const Scene& scene)
 {
-	const Scene&                                     scene = *Omega::instance().getScene();
 	// bodies that cannot move stay -1
 	std::vector<int>                                 place(scene.bodies->size(), -1);
 	std::vector<ddem::ParticleMass>                  particles;
 	std::vector<ddem::PairSpring>                    springs, dampers;
+	std::vector<std::pair<int, int>>                 bodies; ///< of every spring
 	std::vector<std::pair<const Wall*, const Body*>> walls;
 	for (const auto& body : *scene.bodies) {
 		if (!body) continue;
@@ -292,21 +315,32 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 		place[size_t(body->id)] = int(particles.size());
 		particles.push_back({ body->state->mass, body->state->inertia.minCoeff() });
 	}
+	const auto bodyOf = [&scene](int id) -> const Body& { return *(*scene.bodies)[id]; };
+	const auto add    = [&](int id1, int id2, const ddem::PairSpring& spring) {
+                springs.push_back(spring);
+                bodies.emplace_back(id1, id2);
+	};
 	for (const auto& I : *scene.interactions) {
 		if (const auto* held = dynamic_cast<const ElasticWallPhys*>(I->phys.get()); held && held->bonded)
-			springs.push_back({ place[size_t(I->getId2())], -1, held->kn, held->ks, 0, 0, 0, 0 });
+			add(I->getId1(), I->getId2(),
+			    { place[size_t(I->getId2())], -1, held->kn, held->ks, 0, 0, 0, 0 });
 		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
 		if (!phys || !I->geom) continue;
-		const auto&      geom  = static_cast<const ScGeom&>(*I->geom);
-		const Real       share = phys->contactReach / (geom.radius1 + geom.radius2);
+		const auto& geom  = static_cast<const ScGeom&>(*I->geom);
+		const Body &body1 = bodyOf(I->getId1()), &body2 = bodyOf(I->getId2());
+		const Real  share = phys->contactReach / (geom.radius1 + geom.radius2);
+		const auto  arm   = [&](const Body& body, Real radius) {
+                        return dynamic_cast<const Sphere*>(body.shape.get())
+                                ? math::min(Real(1), share) * radius
+                                : (geom.contactPoint - body.state->pos).norm();
+		};
 		ddem::PairSpring spring {
 			place[size_t(I->getId1())], place[size_t(I->getId2())], phys->kn, phys->ks, 0, 0,
-			share * geom.radius1,       share * geom.radius2
+			arm(body1, geom.radius1),   arm(body2, geom.radius2)
 		};
 		// of the contact that is there or that a broken bond leaves
 		if (phys->normalDamping > 0 || phys->shearDamping > 0) {
-			const auto damping = phys->contactDamping(
-			        (*scene.bodies)[I->getId1()]->state->mass, (*scene.bodies)[I->getId2()]->state->mass);
+			const auto damping = phys->contactDamping(body1.state->mass, body2.state->mass);
 			dampers.push_back({ spring.first, spring.second, damping.normal, damping.shear, 0, 0,
 			                    spring.arm1, spring.arm2 });
 		}
@@ -315,7 +349,7 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 			spring.torsion = phys->kt;
 			spring.arm1 = spring.arm2 = phys->bondLength / 2;
 		}
-		springs.push_back(spring);
+		add(I->getId1(), I->getId2(), spring);
 	}
 	for (const auto& [wall, wallBody] : walls) { // also those particles that are about to touch
 		const auto* material = dynamic_cast<const ElasticWallMat*>(wallBody->material.get());
@@ -326,11 +360,21 @@ Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 			if (math::abs(body->state->pos[wall->axis] - wallBody->state->pos[wall->axis])
 			    > 2 * sphere->radius)
 				continue;
-			springs.push_back({ place[size_t(body->id)], -1,
-			                    ddem::wallSpring(sphere->radius, material->stiffness), 0, 0, 0, 0, 0 });
+			add(wallBody->id, body->id,
+			    { place[size_t(body->id)], -1, ddem::wallSpring(sphere->radius, material->stiffness), 0, 0,
+			      0, 0, 0 });
 		}
 	}
-	return ddem::dampedStableStep(ddem::stableStep(particles, springs), ddem::stableStep(particles, dampers));
+	const ddem::PairSpring* ruling = nullptr;
+	const Real              undamped = ddem::stableStep(particles, springs, &ruling);
+	BondedStableStep found { ddem::dampedStableStep(undamped, ddem::stableStep(particles, dampers)), -1, -1 };
+	if (ruling) std::tie(found.id1, found.id2) = bodies[size_t(ruling - springs.data())];
+	return found;
+}
+
+Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
+{
+	return criticalTimeStepOf(*Omega::instance().getScene()).step;
 }
 
 } // namespace yade

@@ -12,6 +12,12 @@
 
 namespace yade {
 
+/// Bound on the time step [s], and the bodies of the pair that sets it; -1 where there is none.
+struct BondedStableStep {
+	Real       step;
+	Body::id_t id1, id2;
+};
+
 class Law2_ScGeom_BondedPhys_MohrCoulomb : public LawFunctor {
 public:
 	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
@@ -37,8 +43,9 @@ public:
 	boost::python::dict largestStresses() const;
 	/// Bytes of YADE's objects for a bond.
 	static long bytesPerBond() { return long(sizeof(Interaction) + sizeof(ScGeom) + sizeof(BondedPhys)); }
-	/// Bound on the time step [s], see ddem::stableStep.
+	/// Bound on the time step of the current scene [s], see ddem::stableStep.
 	static Real criticalTimeStep();
+	static BondedStableStep criticalTimeStepOf(const Scene& scene);
 
 	FUNCTOR2D(ScGeom, BondedPhys);
 	// clang-format off
@@ -68,8 +75,10 @@ public:
 		"(dissipated) [J].\n\n"
 		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast "
 		"as one by one in an :yref:`InteractionLoop`.\n\n"
-		"**Geometry.** :yref:`ScGeom` is enough (:yref:`Ig2_Sphere_Sphere_ScGeom`); :yref:`ScGeom6D` works as "
-		"well, its relative rotations are not used.\n\n"
+		"**Geometry.** Contacts take every :yref:`ScGeom`: spheres, clump members, :yref:`Wall`, :yref:`Box`, "
+		":yref:`Facet`, polyhedra. What is no sphere has its springs by the sphere's image, and slips where it "
+		"is touched. :yref:`ScGeom6D` works as well, its relative rotations are not used; "
+		":yref:`ScGridCoGeom` is refused.\n\n"
 		"**Saving.** Bonds and the list of broken bonds are saved with the scene. "
 		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it "
 		"refuses to be made, loaded or run.",
@@ -107,11 +116,12 @@ public:
 	// clang-format on
 
 private:
-	/// One step of the contact that a pair has instead of a bond. \returns whether the spheres touch
+	/// One step of the contact that a pair has instead of a bond. \returns whether it may stay
 	bool advanceContact(Interaction& I);
-	ddem::ContactLoads contactLoadsOf(
-	        const ScGeom& geom, BondedPhys& phys, const State& state1, const State& state2,
-	        const Vector3r& branch) const;
+	/// Loads of a contact, of any geometry, and what it remembers of them.
+	ddem::ContactLoads contactLoadsOf(const Interaction& I);
+	bool touching(const Interaction& I) const;
+	bool isSphere(Body::id_t id) const;
 	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);

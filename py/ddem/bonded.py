@@ -31,11 +31,13 @@ import math
 import numpy as np
 
 from yade import (
-	Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat, ElasticWallMat, ForceResetter,
-	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
-	Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O,
-	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
+	Bo1_Box_Aabb, Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat,
+	ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom,
+	Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
+	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Ip2_FrictMat_BondedMat_BondedPhys,
+	Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
+	Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3,
+	ViscousBodyDamping, utils
 )
 
 from . import broken_bonds
@@ -316,6 +318,9 @@ class Platens:
 def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="consistent"):
 	"""The engines of a bonded scene in their order; append recorders to the list.
 
+	Spheres of :yref:`BondedMat` meet each other, and walls, boxes and facets of :yref:`BondedMat`,
+	:yref:`ElasticWallMat` or :yref:`FrictMat`.
+
 	:param platens: :class:`Platens` whose motion is included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
@@ -332,13 +337,21 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	)
 	return [
 		ForceResetter(),
-		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], label="collider"),
+		InsertionSortCollider(
+			[Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb(), Bo1_Facet_Aabb()], label="collider"
+		),
 		BondedInteractionLoop(
-			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
-			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
+			[
+				Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom(),
+				Ig2_Facet_Sphere_ScGeom()
+			],
+			[
+				Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys(),
+				Ip2_FrictMat_BondedMat_BondedPhys(), Ip2_FrictMat_FrictMat_FrictPhys()
+			],
 			[
 				Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention),
-				Law2_ScGeom_ElasticWallPhys_Repulsion(),
+				Law2_ScGeom_ElasticWallPhys_Repulsion(), Law2_ScGeom_FrictPhys_CundallStrack(),
 			],
 			label="interactions",
 		),

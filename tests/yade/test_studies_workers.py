@@ -161,8 +161,8 @@ def test_results_of_another_plugin_or_yade_are_refused(tmp_path, name, there):
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-	"""Address of a scheduler with workers of one thread each, started as the manual says: two on one address of this
-	machine, one on another."""
+	"""Address of a scheduler with workers of one thread each, started as the manual says: two on one address of
+	this machine, one on another."""
 	folder = tmp_path_factory.mktemp("cluster")
 	log = open(folder / "log", "wb")
 	start = lambda *arguments: subprocess.Popen(

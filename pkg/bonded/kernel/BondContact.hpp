@@ -45,13 +45,20 @@ inline ContactStiffness contactStiffness(const BondElasticity& elasticity, doubl
 	return { bond.normal, bond.shear };
 }
 
-/// Motion of two touching spheres; the radii share the reach of the contact, r1 + r2 = reach.
+/** Motion of two touching spheres; the radii share the reach of the contact, r1 + r2 = reach.
+ *
+ * A particle that is no sphere (a wall, a facet, a polyhedron) has the radius 0: the distance is then measured from
+ * its surface, its velocity is that of its surface at the contact, and its moment is that of the force there, which is
+ * left to the caller.
+ */
 struct ContactMotion {
 	Eigen::Vector3d normal;                             ///< unit vector from particle 1 to 2
 	double          distance;                           ///< of the centres [m]
 	double          radius1, radius2;                   ///< [m]
 	Eigen::Vector3d relativeVelocity;                   ///< v2 - v1 [m/s]
 	Eigen::Vector3d angularVelocity1, angularVelocity2; ///< [rad/s]
+
+	bool ofSpheres() const { return radius1 > 0 && radius2 > 0; }
 };
 
 /// What a contact remembers between steps.
@@ -107,7 +114,7 @@ inline TangentialSpring tangentialSpring(bool gradual, double linear, double str
 		 limit };
 }
 
-/// One step of a contact of spheres. A pair further apart than its reach bears nothing and forgets its slip.
+/// One step of a contact. A pair further apart than its reach bears nothing and forgets its slip.
 inline ContactLoads contactLoads(
         const ContactStiffness& stiffness,
         const ContactFriction&  friction,
@@ -119,8 +126,9 @@ inline ContactLoads contactLoads(
 	using Eigen::Vector3d;
 	const double    reach = motion.radius1 + motion.radius2, overlap = reach - motion.distance;
 	const Vector3d& n     = motion.normal;
-	// turns the centres' relative velocity into one of the surfaces
-	const double    scale = reach / motion.distance;
+	// Turns the centres' relative velocity into one of the surfaces: on a sphere the contact moves less far than
+	// the other centre, on a plane as far.
+	const double    scale = motion.ofSpheres() ? reach / motion.distance : 1;
 	Vector3d        slip  = dt
 	        * (scale * motion.relativeVelocity
 	           - (motion.radius1 * motion.angularVelocity1 + motion.radius2 * motion.angularVelocity2).cross(n));

@@ -52,7 +52,8 @@ namespace {
 
 } // namespace
 
-double stableStep(const std::vector<ParticleMass>& particles, const std::vector<PairSpring>& springs)
+double stableStep(
+        const std::vector<ParticleMass>& particles, const std::vector<PairSpring>& springs, const PairSpring** ruling)
 {
 	std::vector<Stiffness> total(particles.size());
 	const auto             add = [&total](int particle, const Stiffness& stiffness) {
@@ -70,12 +71,13 @@ double stableStep(const std::vector<ParticleMass>& particles, const std::vector<
 		return particle < 0 ? Mobility() : share(particles[place], own, total[place]);
 	};
 	double highest = 0;
-	for (const PairSpring& spring : springs)
-		highest = std::max(
-		        highest,
-		        highestEigenvalue(
-		                spring, mobility(spring.first, ofFirst(spring)),
-		                mobility(spring.second, ofSecond(spring))));
+	for (const PairSpring& spring : springs) {
+		const double own = highestEigenvalue(
+		        spring, mobility(spring.first, ofFirst(spring)), mobility(spring.second, ofSecond(spring)));
+		if (!(own > highest)) continue;
+		highest = own;
+		if (ruling) *ruling = &spring;
+	}
 	return highest > 0 ? 2 / std::sqrt(highest) : std::numeric_limits<double>::infinity();
 }
 

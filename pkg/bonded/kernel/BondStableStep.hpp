@@ -27,8 +27,11 @@ struct ParticleMass {
  * such pairs can have a higher frequency than its worst pair with the masses it was given (Irons and Treharne 1971, as
  * for finite elements), so the bound is rigorous about rest whatever the shares. Here they leave it within about
  * a tenth of the exact value. Bonds under load σ shift frequencies by about σ/E.
+ * \param ruling gets the spring of the worst pair, where there are springs
  */
-double stableStep(const std::vector<ParticleMass>& particles, const std::vector<PairSpring>& springs);
+double stableStep(
+        const std::vector<ParticleMass>& particles, const std::vector<PairSpring>& springs,
+        const PairSpring** ruling = nullptr);
 
 /** Longest stable step with viscous dampers, whose forces leapfrog takes from the velocities of the last half step [s]:
  * h² ω² + 2 h λ ≤ 4, λ the highest damping rate.

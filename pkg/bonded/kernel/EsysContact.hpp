@@ -27,7 +27,8 @@ inline ContactLoads esysContactLoads(
 		return loads;
 	}
 	// to the contact point, along the branch
-	const double arm1 = motion.radius1 / reach * motion.distance, arm2 = motion.radius2 / reach * motion.distance;
+	const auto arm = [&](double radius) { return motion.ofSpheres() ? radius / reach * motion.distance : radius; };
+	const double arm1 = arm(motion.radius1), arm2 = arm(motion.radius2);
 	Vector3d     slip = dt
 	        * (motion.relativeVelocity
 	           - (arm1 * motion.angularVelocity1 + arm2 * motion.angularVelocity2).cross(n));

@@ -74,7 +74,8 @@ class Workers:
 		self.jobs, self.cluster, self._alike = jobs, cluster, alike
 		self.owner = uuid.uuid4().hex  #: of the processes that are started, see :func:`yade_process.end`
 		self._client = self._local = None
-		self._known, self._own = set(), []  # addresses of all workers of the cluster, hosts of those that are used
+		# addresses of all workers of the cluster, hosts of those that are used
+		self._known, self._own = set(), []
 		self._stopped = False
 		#: name of the machines that are used
 		self.machine = _name(platform.node(), processor(), alike)
@@ -177,8 +178,8 @@ class Workers:
 		}
 
 	def _hosts(self):
-		"""Hosts of the machines that are used, those that have come since included. Where they have all gone, the
-		last ones: what is submitted waits for them, as no others may make it."""
+		"""Hosts of the machines that are used, those that have come since included. Where they have all gone,
+		the last ones: what is submitted waits for them, as no others may make it."""
 		known = set(self._client.scheduler_info()["workers"])
 		if known != self._known:
 			from distributed.comm import get_address_host

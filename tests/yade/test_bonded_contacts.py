@@ -1,0 +1,281 @@
+# GPL v2 or later, see LICENSE.
+"""Spheres of BondedMat against everything that YADE has: walls, boxes, facets, clumps, other materials, its steppers
+and controllers. Forces, moments, collisions and rolling have closed forms."""
+import math
+
+import numpy as np
+import pytest
+
+from yade import (
+	BondedInteractionLoop, BondedMat, Bo1_Box_Aabb, Bo1_Sphere_Aabb, ElasticWallMat, ForceResetter, FrictMat,
+	GlobalStiffnessTimeStepper, Ig2_Box_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider,
+	Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Quaternion,
+	TriaxialStressController, Vector3, ddem, utils
+)
+
+RADIUS, YOUNG, DENSITY = 1e-3, 60e9, 2600
+SPRING = math.pi * YOUNG * RADIUS / 2  # of two equal spheres, or of one and its image: EA/d0, A = pi r^2, d0 = 2 r
+MASS = 4 / 3 * math.pi * RADIUS**3 * DENSITY
+TURN = Quaternion(Vector3(0.3, -0.5, 0.8).normalized(), 0.7)  # of the box, so that no face is along an axis
+
+
+def rock(**more):
+	O.materials.append(BondedMat(label="rock", young=YOUNG, poisson=0.25, density=DENSITY, **more))
+
+
+def ball(place, **more):
+	return O.bodies.append(utils.sphere(place, RADIUS, material="rock", **more))
+
+
+def wall(material):
+	return O.bodies.append(utils.wall(0, axis=1, material=material)), Vector3(0, 1, 0), Vector3.Zero
+
+
+def box(material):
+	made = utils.box((0, 0, 0), (0.01, 0.004, 0.02), material=material, fixed=True, orientation=TURN)
+	up = TURN * Vector3(0, 1, 0)
+	return O.bodies.append(made), up, 0.004 * up + TURN * Vector3(0.003, 0, -0.002)
+
+
+def facet(material):
+	corners = [TURN * Vector3(*x) for x in ((-0.01, 0, -0.01), (0.01, 0, -0.01), (0, 0, 0.02))]
+	made = utils.facet(corners, material=material, fixed=True)
+	return O.bodies.append(made), TURN * Vector3(0, 1, 0), TURN * Vector3(0.001, 0, 0.002)
+
+
+def member(material):
+	"""The other sphere of a clump that is held."""
+	clump, (one, _) = O.bodies.appendClumped(
+		[utils.sphere((0, -RADIUS, 0), RADIUS, material=material),
+		utils.sphere((1.5 * RADIUS, -RADIUS, 0), RADIUS, material=material)]
+	)
+	O.bodies[clump].state.blockedDOFs = "xyzXYZ"
+	return one, Vector3(0, 1, 0), Vector3.Zero
+
+
+SHAPES = {"wall": wall, "box": box, "facet": facet, "clump member": member}
+
+
+def on(shape, overlap, material="rock", **more):
+	"""A ball that is so far in something; its id, that of the other, the normal, the point of contact."""
+	rock(**more)
+	other, normal, surface = SHAPES[shape](material)
+	one = ball(surface + (RADIUS - overlap) * normal)
+	O.engines = ddem.bonded.engines()
+	O.dt = 1e-9
+	return one, other, normal, surface - (overlap / 2) * normal
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_force_is_the_spring_times_the_overlap_along_the_normal(shape):
+	one, other, normal, point = on(shape, 1e-6)
+	O.step()
+	(contact, ) = O.interactions
+	assert contact.phys.kn == pytest.approx(SPRING, rel=1e-12) and contact.geom.penetrationDepth == pytest.approx(
+		1e-6
+	)
+	force = SPRING * 1e-6 * normal
+	assert np.allclose(O.forces.f(one), force, rtol=1e-9, atol=1e-9 * force.norm())
+	assert np.allclose(O.forces.f(other), -force, rtol=1e-9, atol=1e-9 * force.norm())
+	assert O.forces.t(one).norm() < 1e-9 * force.norm() * RADIUS
+	arm = (point - O.bodies[other].state.pos).cross(-force)
+	assert np.allclose(O.forces.t(other), arm, atol=1e-6 * force.norm() * RADIUS)
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_it_leaves_as_fast_as_it_came(shape):
+	"""Half a period of the oscillator, pi sqrt(m/k), in contact; restitution 1."""
+	one, _, normal, _ = on(shape, 0, frictionStatic=0, frictionDynamic=0)
+	state = O.bodies[one].state
+	state.pos += 1e-9 * normal
+	state.vel = -1.0 * normal
+	period = math.pi * math.sqrt(MASS / SPRING)
+	O.dt = period / 2000
+	touching = 0
+	for _ in range(2500):
+		O.step()
+		touching += any(i.isReal for i in O.interactions)
+	# leaves between two steps: a part of 2000 of the period
+	assert state.vel.dot(normal) == pytest.approx(1, rel=1e-3)
+	assert touching * O.dt == pytest.approx(period, rel=5e-3)
+	assert (state.vel - state.vel.dot(normal) * normal).norm() < 1e-9 and state.angVel.norm() < 1e-6
+
+
+@pytest.mark.parametrize("shape", ("wall", "box", "facet"))
+def test_what_slides_comes_to_roll_with_five_sevenths_of_its_speed(shape):
+	"""Angular momentum about the line of contact stays: m v0 r = m v r + 2/5 m r² ω; rolling, v = 5/7 v0, whatever
+	the friction. The spring of the contact goes on swinging about that, as nothing damps it."""
+	one, _, normal, _ = on(shape, 1e-6, frictionStatic=0.5, frictionDynamic=0.5)
+	state = O.bodies[one].state
+	along = normal.cross(Vector3(0, 0, 1)).normalized()
+	state.vel = 0.05 * along
+	O.forces.setPermF(one, -SPRING * 1e-6 * normal)
+	O.dt = 2e-8
+	speeds = []
+	for _ in range(3000):
+		O.step()
+		speed, surface = state.vel.dot(along), state.angVel.dot(normal.cross(along)) * RADIUS
+		assert speed + 0.4 * surface == pytest.approx(0.05, rel=1e-9)
+		speeds.append(speed)
+	assert np.mean(speeds[1000:]) == pytest.approx(0.05 * 5 / 7, rel=0.01)
+
+
+@pytest.mark.parametrize("shape", ("box", "facet", "wall"))
+def test_an_oblique_collision_takes_twice_mu_of_the_normal_speed(shape):
+	"""Sliding all the time: v_t' = v_t - 2 mu v_n, r ω = 5 mu v_n; and the book closes."""
+	one, _, normal, _ = on(shape, 0, frictionStatic=0.1, frictionDynamic=0.1)
+	state = O.bodies[one].state
+	along = normal.cross(Vector3(0, 0, 1)).normalized()
+	state.vel = -1.0 * normal + 1.0 * along
+	state.pos += 1e-9 * normal
+	O.trackEnergy = True
+	O.dt = math.pi * math.sqrt(MASS / SPRING) / 1000
+	O.run(1500, True)
+	assert state.vel.dot(normal) == pytest.approx(1, rel=2e-3)
+	assert state.vel.dot(along) == pytest.approx(0.8, rel=0.02)
+	assert state.angVel.dot(normal.cross(along)) * RADIUS == pytest.approx(0.5, rel=0.05)
+	moving = 0.5 * MASS * state.vel.squaredNorm() + 0.2 * MASS * RADIUS**2 * state.angVel.squaredNorm()
+	assert moving + O.energy["friction"] == pytest.approx(MASS, rel=2e-3)
+
+
+@pytest.mark.parametrize("first", ("steel", "rock"))
+def test_steel_of_frictmat_meets_rock(first):
+	"""Springs in series: the harmonic mean of both moduli; the lower friction."""
+	rock(frictionStatic=0.6, frictionDynamic=0.4)
+	O.materials.append(FrictMat(label="steel", young=200e9, poisson=0.3, frictionAngle=0.3, density=7800))
+	names = (first, "rock" if first == "steel" else "steel")
+	one, two = (
+		O.bodies.append(utils.sphere((x, 0, 0), RADIUS, material=name))
+		for x, name in zip((0, 2 * RADIUS - 1e-6), names)
+	)
+	O.engines = ddem.bonded.engines()
+	O.dt = 1e-9
+	O.step()
+	(contact, ) = O.interactions
+	assert contact.phys.kn == pytest.approx(SPRING / YOUNG * 2 / (1 / 200e9 + 1 / YOUNG), rel=1e-12)
+	assert contact.phys.frictionStatic == pytest.approx(
+		math.tan(0.3)
+	) and contact.phys.frictionDynamic == pytest.approx(math.tan(0.3))
+	assert O.forces.f(one)[0] == pytest.approx(-contact.phys.kn * 1e-6, rel=1e-9) == -O.forces.f(two)[0]
+
+
+@pytest.mark.parametrize("shape", ("box", "facet"))
+def test_elastic_walls_are_boxes_and_facets_too(shape):
+	"""A spring of pi r K without friction."""
+	O.materials.append(ElasticWallMat(label="plate", stiffness=50e9))
+	one, other, normal, point = on(shape, 1e-6, material="plate")
+	O.bodies[one].state.vel = normal.cross(Vector3(0, 0, 1))
+	O.step()
+	force = math.pi * RADIUS * 50e9 * 1e-6 * normal
+	assert np.allclose(O.forces.f(one), force, rtol=1e-9, atol=1e-9 * force.norm())
+	assert np.allclose(
+		O.forces.t(other), (point - O.bodies[other].state.pos).cross(-force), atol=1e-3 * force.norm() * RADIUS
+	)
+
+
+def test_damping_against_what_nothing_moves_has_the_mass_of_the_sphere():
+	"""c = 2 zeta sqrt(m k)."""
+	one, _, normal, _ = on("facet", 1e-9, normalDamping=0.1)
+	O.bodies[one].state.vel = -0.1 * normal
+	O.step()
+	O.step()
+	drag = O.forces.f(one).dot(normal) - SPRING * next(iter(O.interactions)).geom.penetrationDepth
+	assert drag == pytest.approx(2 * 0.1 * math.sqrt(MASS * SPRING) * 0.1, rel=5e-3)
+
+
+def test_a_deforming_cell_carries_its_images():
+	"""Simple shear of a cell: two spheres that move with it touch across its border, and do not slip."""
+	rock()
+	O.periodic = True
+	O.cell.setBox(8 * RADIUS, 8 * RADIUS, 8 * RADIUS)
+	rate = 100.0
+	O.cell.velGrad = [[0, rate, 0], [0, 0, 0], [0, 0, 0]]
+	O.cell.homoDeform = 2
+	for height in (0.5 * RADIUS, 6.5 * RADIUS + 1e-6):  # the upper one touches the lower one's image above
+		ball((4 * RADIUS, height, 4 * RADIUS))
+	O.engines = ddem.bonded.engines()
+	O.dt = 1e-9
+
+	def slipped():
+		(contact, ) = [i for i in O.interactions if i.isReal and i.cellDist[1]]
+		return contact.phys.shearForce.norm() / contact.phys.ks
+
+	for _ in range(3):
+		O.step()  # NewtonIntegrator gives the spheres the velocity of the cell
+	assert O.bodies[1].state.vel[0] == pytest.approx(6.5 * RADIUS * rate, rel=1e-3)
+	before = slipped()
+	for _ in range(10):  # a small part of the contact's period
+		O.step()
+	# The centres are two radii apart; NewtonIntegrator turns the spheres with the cell, by half of the shear.
+	# Without the velocity of the image the centres would seem to move by six.
+	assert O.bodies[1].state.angVel[2] == pytest.approx(-rate / 2, rel=5e-3)
+	assert (slipped() - before) / (10 * O.dt * rate * RADIUS) == pytest.approx(1, rel=0.01)
+
+
+# ---- YADE's steppers and controllers ----
+
+
+def sample(**more):
+	rock(cohesion=60e6, **more)
+	return ddem.bonded.append(ddem.packing.prism(0.01, 0.02, 0.01, 1e-3, 2e-3, seed=1), "rock")
+
+
+def test_the_stiffness_stepper_of_yade_stays_below_the_bound():
+	rocks = sample()
+	bound = ddem.bonded.critical_time_step()
+	O.engines = [*ddem.bonded.engines(), GlobalStiffnessTimeStepper(timeStepUpdateInterval=10)]
+	O.dt = 0.1 * bound
+	O.run(300, True)
+	assert 0.3 * bound < O.dt < bound and len(rocks.broken) == 0
+	assert 0.5 * (rocks.velocities**2).sum() < 1e-6
+
+
+@pytest.mark.parametrize("run", (lambda: O.run(10, True), lambda: O.step(), lambda: ddem.run(steps=10)))
+def test_a_step_above_the_bound_stops(run):
+	sample()
+	O.engines = ddem.bonded.engines()
+	bound = ddem.bonded.critical_time_step()
+	O.dt = 1.001 * bound
+	with pytest.raises(
+		RuntimeError, match=r"above the critical time step .* set by bodies #\d+ and #\d+ .*time_step"
+	):
+		run()
+	O.dt = 0.999 * bound
+	O.run(10, True)  # and goes on when it is right
+
+
+def test_a_step_that_a_stepper_makes_too_long_names_it():
+	sample()
+	stepper = GlobalStiffnessTimeStepper(timestepSafetyCoefficient=3, timeStepUpdateInterval=1)
+	O.engines = [*ddem.bonded.engines(), stepper]
+	O.dt = ddem.bonded.time_step(0.1)
+	with pytest.raises(
+		RuntimeError, match="GlobalStiffnessTimeStepper sets O.dt: lower its timestepSafetyCoefficient"
+	):
+		O.run(20, True)
+
+
+def test_triaxial_stress_on_box_walls():
+	"""What users of YADE do with rock: six boxes, a controller, 5 MPa."""
+	rocks = sample()
+	sides = O.bodies.append(utils.aabbWalls(thickness=0, material="rock"))
+	names = ("left", "right", "bottom", "top", "back", "front")
+	controller = TriaxialStressController(
+		thickness=0, stressMask=7, internalCompaction=False, goal1=-5e6, goal2=-5e6, goal3=-5e6, max_vel=0.05,
+		**{f"wall_{name}_id": side for name, side in zip(names, sides)}
+	)
+	O.engines = [
+		ForceResetter(),
+		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Box_Aabb()]),
+		BondedInteractionLoop(
+			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()], [Ip2_BondedMat_BondedMat_BondedPhys()],
+			[Law2_ScGeom_BondedPhys_MohrCoulomb()]
+		),
+		GlobalStiffnessTimeStepper(timestepSafetyCoefficient=0.3, timeStepUpdateInterval=10),
+		controller,
+		NewtonIntegrator(damping=0.2),
+	]
+	O.dt = ddem.bonded.time_step(0.3)
+	O.run(500, True)
+	assert [controller.stress(k)[k // 2] for k in range(6)] == pytest.approx([-5e6] * 6, rel=0.02)
+	assert len(rocks.broken) == 0
