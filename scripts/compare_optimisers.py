@@ -10,14 +10,15 @@ Writes:   a line a search and a table here; in out/compare_optimisers: compariso
           prism.png and analytic.png, and evaluations.jsonl with every evaluation, whoever asked for it.
 
 Young's modulus and strength of the prism of scripts/calibrate.py, with few spheres so that a test takes a moment, are
-drawn from the range of rock; then a strength in tension as well, from the ratios that these bonds have.
+drawn from the range of rock; then a strength in tension as well, from the ratios of strengths that each packing has
+between friction angles of 15° and 65°.
 All methods begin at the same start, that of the scaling laws, within the same bounds, and try at most the same number
 of points; a search ends at the first one that meets all targets. A point counts for every method that tries it, though
 it is measured only once: compression, with three targets tension as well. A point whose test fails counts, too.
 
 Ours is given as it is, and without the scaling laws that it knows beside the start. The others work on
 logarithms of parameters, relative to the start: least_squares on logarithmic misses over tolerances, with finite
-differences of the same 8 %; the rest on ln(1 + sum of squares of these).
+differences of the same 8 %; the rest on the sum of squares of these.
 The control is a smooth function with elasticities like those of the prism.
 
 Expect:   bonds break chaotically: a strength scatters by some per cent between neighbouring parameters. On the smooth
@@ -42,15 +43,16 @@ from yade.ddem.studies import commandline, virtualtest
 from yade.ddem.studies.calibration import DIGITS, Calibration, Target
 from yade.ddem.studies.calibration_quantities import MEASURES, TUNABLES, parameters, starts, usual
 from yade.ddem.studies.commandline import count, positive, seed, share
-from yade.ddem.studies.evaluations import Bench, OutOfBudget
+from yade.ddem.studies.evaluations import Bench, EvaluationError, OutOfBudget
 
 AIMS = (("young", "ucs"), ("young", "ucs", "tensile"))  #: targets that are sought together
 YOUNG, UCS = (20e9, 60e9), (30e6, 150e6)  # of rock [Pa]
-RATIO = (2.2, 3.0)  # of strengths in compression and tension, which these bonds can have
+ANGLES = (math.radians(15), math.radians(65))  # between which the ratio of both strengths is drawn
 REACH = 5.0  # bounds: so many times below and above the start, for angles their range
 FAILED = math.log(10)  # logarithmic miss of a point that could not be measured
 STEP = 0.08  # of finite differences, as in calibrate.py
 FAR = 100.0  # added to log-parameters, so that SciPy's relative steps are steps of the same size everywhere
+STRAIN = 0.015  # largest one of a test [-]
 SIMPLEX = 0.25  # edge of the first simplex, in logarithms
 
 
@@ -64,14 +66,24 @@ class Problem:
 	parameters: list
 
 
-def problems(measures, number, tolerance, drawn):
-	"""So many problems with targets drawn by the numpy generator *drawn*."""
+def ratios(bench):
+	"""Strength in compression over that in tension at both of :data:`ANGLES`, the smaller one first."""
+	ends = bench.measure([{"young": 40e9, "cohesion": 60e6, "bondFrictionAngle": angle} for angle in ANGLES])
+	for end in ends:
+		if end.error:
+			raise EvaluationError(f"the ratio of strengths cannot be measured: {end.error}")
+	return sorted(end.measured["ucs"] / end.measured["tensile"] for end in ends)
+
+
+def problems(bench, measures, number, tolerance, drawn):
+	"""So many problems on a bench with targets drawn by the numpy generator *drawn*."""
+	ratio = ratios(bench) if "tensile" in measures else (1.0, 1.0)
 	reference = virtualtest.material("rigid", {}, 2400.0)
 	material = {name: getattr(reference, name) for name in TUNABLES["rigid"]}
 	made = []
 	for _ in range(number):
 		young, ucs = (math.exp(drawn.uniform(*np.log(span))) for span in (YOUNG, UCS))
-		wanted = {"young": young, "ucs": ucs, "tensile": ucs / drawn.uniform(*RATIO)}
+		wanted = {"young": young, "ucs": ucs, "tensile": ucs / drawn.uniform(*ratio)}
 		targets = [Target(name, float(f"{wanted[name]:.3g}"), tolerance) for name in measures]
 		start = starts("rigid", {target.name: target.value for target in targets}, material)
 		names = usual("rigid", measures)
@@ -180,8 +192,8 @@ class Tries:
 		)
 
 	def distance(self, x):
-		"""One number for methods that take no more: ln(1 + sum of squares of the residuals)."""
-		return math.log1p((self.residuals(x)**2).sum())
+		"""One number for methods that take no more: the sum of squares of the residuals."""
+		return float((self.residuals(x)**2).sum())
 
 
 class Reached(Exception):
@@ -300,7 +312,7 @@ def search(method, bench, problem, budget, number):
 def compare(options, report):
 	"""All searches, a list of :class:`Search`."""
 	setup = virtualtest.Setup.standard(
-		"rigid", "prism", radii=tuple(options.radii), velocity=options.velocity, strain=0.02,
+		"rigid", "prism", radii=tuple(options.radii), velocity=options.velocity, strain=STRAIN,
 		fails=options.fails
 	)
 	packings = os.path.abspath(os.path.join(options.out, "packings"))
@@ -316,7 +328,7 @@ def compare(options, report):
 			path = os.path.join(options.out, "evaluations.jsonl")
 			with Bench(evaluate, cases, evaluate.settings(), path) as bench:
 				for number, problem in enumerate(
-					problems(measures, options.targets, options.tolerance, drawn)
+					problems(bench, measures, options.targets, options.tolerance, drawn)
 				):
 					for method in options.methods:
 						reached, misses = search(
@@ -403,7 +415,8 @@ def picture(found, budget, tolerance, file):
 						linewidth=0
 					)
 					ax.plot(
-						tried, np.median(curves, axis=0), color=colour, label=f"{targets} targets"
+						tried, np.median(curves, axis=0), color=colour,
+						label=f"{targets} targets"
 					)
 			ax.axhline(100 * tolerance, color="0.3", linewidth=0.6, linestyle="--")
 			ax.set_title(METHODS[method][0])
@@ -452,7 +465,8 @@ def read_options():
 	"""Options from the command line; complains about them before anything runs."""
 	parser = commandline.script_parser("compare_optimisers", __doc__.split("\n\n", 1)[0])
 	parser.add_argument(
-		"--models", nargs="+", choices=("analytic", "prism"), default=["analytic", "prism"], help="what is tuned"
+		"--models", nargs="+", choices=("analytic", "prism"), default=["analytic", "prism"],
+		help="what is tuned"
 	)
 	parser.add_argument(
 		"--methods", nargs="+", choices=tuple(METHODS), default=list(METHODS), metavar="NAME",
@@ -464,7 +478,7 @@ def read_options():
 	parser.add_argument("--budget", type=count, default=60, metavar="N", help="points that each method may try")
 	parser.add_argument("--tolerance", type=share, default=0.02, metavar="PART", help="of every target")
 	parser.add_argument(
-		"--radii", type=positive, nargs=2, default=(1e-3, 2e-3), metavar=("MIN", "MAX"),
+		"--radii", type=positive, nargs=2, default=(0.8e-3, 2e-3), metavar=("MIN", "MAX"),
 		help="range of the spheres' radii [m]"
 	)
 	parser.add_argument(
@@ -472,7 +486,7 @@ def read_options():
 		help="the packing is finished when so many spheres in a row found no place"
 	)
 	parser.add_argument(
-		"--velocity", type=positive, default=0.5, metavar="M/S", help="of each platen in compression"
+		"--velocity", type=positive, default=1.0, metavar="M/S", help="of each platen in compression"
 	)
 	parser.add_argument(
 		"--out", default=os.path.join("out", "compare_optimisers"), metavar="DIR", help="folder for all files"
