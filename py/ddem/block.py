@@ -55,7 +55,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	nodes = []
 	for x, y in mesh.nodes:
 		nodes.append(_body(DeformableNode(), Vector3(x + offset[0], y + offset[1], offset[2]), "zXYZ"))
-	node_ids = O.bodies.append(nodes)
+	# one by one: bodies that YADE takes as a list are never freed
+	node_ids = [O.bodies.append(node) for node in nodes]
 	triangles = []
 	centres = mesh.nodes[mesh.triangles].mean(axis=1)
 	for triangle, centre, region, energy, band in zip(
@@ -68,7 +69,7 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 		body = _body(shape, Vector3(centre[0] + offset[0], centre[1] + offset[1], offset[2]), "zXY")
 		body.material = by_region[region]
 		triangles.append(body)
-	return Block(mesh, node_ids, O.bodies.append(triangles), thickness)
+	return Block(mesh, node_ids, [O.bodies.append(triangle) for triangle in triangles], thickness)
 
 
 def time_step(safety=0.8):

@@ -97,7 +97,8 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 		if packing.flat:
 			body.state.blockedDOFs = "zXY"
 		spheres.append(body)
-	ids = BodyIds(O.bodies.append(spheres))
+	# one by one: bodies that YADE takes as a list are never freed, with their bonds 1.5 kB a bond
+	ids = BodyIds([O.bodies.append(body) for body in spheres])
 	Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]])
 	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
 
@@ -269,7 +270,7 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 		utils.wall(float(face), axis=1, sense=sense, material=material)
 		for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1))
 	)
-	bottom, top = O.bodies.append([bottom, top])
+	bottom, top = (O.bodies.append(wall) for wall in (bottom, top))
 	for wall, spheres in zip((bottom, top), held):
 		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
 	return Platens(sample, bottom, top, velocity, ramp, both)
