@@ -20,11 +20,18 @@ the model is any function.
 Everything is done in logarithms of parameters and measures, in which scaling laws are straight lines: a sensitivity is
 an elasticity d ln(measure)/d ln(parameter), and the 1 of "Young's modulus of the sample grows in proportion to that of
 its bonds" needs no evaluation. So the search starts with steps by the scaling laws of the parameters, as long as each
-at least halves the largest miss. Then elasticities are measured by finite differences, all at the same time, and
-a response surface takes over (Box and Wilson 1951): a plane through all points so far, near ones counting more, leads
-to the next point by scipy's bounded least squares. Breaking of bonds is chaotic: neighbouring parameters give strengths
-that differ by a per cent or two. So steps of finite differences are large, and planes average over what scatters where
-a Jacobian or a simplex would follow it. The search stops at the first point that meets all targets.
+halves the largest miss, by these laws and when it is measured. Then elasticities are measured by finite differences,
+all at the same time, and a response surface takes over (Box and Wilson 1951): a plane through all points so far, near
+ones counting more, leads to the next point by scipy's bounded least squares. Breaking of bonds is chaotic: neighbouring
+parameters give strengths that differ by a per cent or two. So steps of finite differences are large, and planes average
+over what scatters where a Jacobian or a simplex would follow it. The search stops at the first point that meets all
+targets.
+
+Beside other searches (``scripts/compare_optimisers.py``; a prism of bonded spheres, two packings, tolerance 2 %, at
+most 60 points): Young's modulus and strength take 3 points in the median of 8 searches, without scaling laws 5, SciPy's
+least_squares 10, Optuna's Gaussian process 14.5, Nelder and Mead's simplex 22; Optuna's TPE and CMA-ES and differential
+evolution do not get there in most. With a strength in tension as well it takes 11, and meets 6 of 8, as many as all
+together, where least_squares meets 3, the Gaussian process and the simplex 2, the others none.
 """
 import itertools
 import math
@@ -194,6 +201,7 @@ class Calibration:
 	def _scale(self, x):
 		"""Steps by the scaling laws, from log-parameters *x*; returns the best point as log-parameters."""
 		laws = np.array([[p.laws.get(target.name, 0.0) for p in self.parameters] for target in self.targets])
+		tolerances = np.array([target.tolerance for target in self.targets])
 		point = self._look([x], "start")[0]
 		if point.error:
 			raise EvaluationError(f"the first evaluation failed: {point.error}")
@@ -201,6 +209,10 @@ class Calibration:
 			step = np.linalg.lstsq(laws, -self._misses(point), rcond=None)[0]
 			following = np.clip(x + step, self._lower, self._upper)
 			if np.abs(following - x).max() < _SMALLEST_STEP:
+				break
+			# what the laws cannot bring together, as a ratio of strengths, they would leave as it is
+			expected = np.abs((self._misses(point) + laws @ (following - x)) / tolerances).max()
+			if expected > _HALF * self._worst(point):
 				break
 			further = self._look([following], "scaling")[0]
 			if further.error or self._worst(further) >= self._worst(point):
