@@ -1,6 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """Tables, files and pictures of a report, made from runs that were computed by hand."""
+import dataclasses
 import json
+import math
 import os
 import re
 import struct
@@ -8,6 +10,7 @@ import struct
 import numpy as np
 import pytest
 from ddem import broken_bonds, mesh, packing
+from ddem.reports.figures import energy
 from ddem.reports.uniaxial import Report
 from ddem.series import Series
 from ddem.studies.runs import Run, cost_ratios
@@ -135,6 +138,16 @@ def test_parts_of_the_energy_book(runs):
 	assert rigid.energy("elastic")[-1] + rigid.energy("friction")[-1] == pytest.approx(4)
 	assert deformable.energy("plastic flow")[-1] == pytest.approx(2.8)
 	assert deformable.energy("friction") is None
+
+
+def test_a_run_without_an_energy_book_draws_none(runs):
+	kept, without = runs
+	kinds = {name: unit for name, unit in without.series.units.items() if not name.startswith("energy_")}
+	without = dataclasses.replace(
+		without, series=Series.of(kinds, **{name: without.series[name] for name in kinds}), energy_error=math.nan
+	)
+	assert math.isnan(without.energy_through) and without.summary()["energy_error"] is None
+	assert energy([without]) is None and len(energy([kept, without]).axes) == 2
 
 
 def test_files_and_page(runs, tmp_path):

@@ -6,6 +6,7 @@ import stat
 
 import pytest
 
+from yade import O
 from yade.ddem.studies import virtualtest
 from yade.ddem.studies.calibration import Calibration, Target
 from yade.ddem.studies.calibration_quantities import parameters
@@ -89,6 +90,14 @@ def test_specimen_that_does_not_fail_is_no_measurement():
 		match="ended at a strain of 0.0.* MPa before the stress had fallen .* allow a larger strain",
 	):
 		perform(Setup(**{**vars(BLOCK), "strain": 5e-4}), CONCRETE, COMPRESSION)
+
+
+@pytest.mark.parametrize("setup, values", [(PRISM, BONDS), (BLOCK, CONCRETE)], ids=["rigid", "deformable"])
+def test_without_the_energy_book_all_else_is_the_same(setup, values):
+	booked = perform(setup, values, COMPRESSION)
+	assert booked.pop("energy_error") < 0.05 and O.trackEnergy and len(O.energy.keys()) > 2
+	plain = perform(dataclasses.replace(setup, energy_book=False), values, COMPRESSION)
+	assert plain == booked and not O.trackEnergy and not O.energy.keys()
 
 
 def test_known_parameters_are_found_again():

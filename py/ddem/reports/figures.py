@@ -116,7 +116,10 @@ def broken_bonds(runs):
 
 
 def energy(runs):
-	"""Where the platens' work went, and how far the energy book is from closing."""
+	"""Where the platens' work went, and how far the energy book is from closing; None where no run kept one."""
+	runs = [run for run in runs if run.energy("input") is not None]
+	if not runs:
+		return None
 	with rc_context(plots.STYLE):
 		fig = plots.figure(plots.PAGE if len(runs) > 1 else plots.COLUMN, 78)
 		axes = fig.subplots(2, len(runs), sharex="col", height_ratios=(3.2, 1), squeeze=False)

@@ -58,7 +58,10 @@ class Run:
 
 	@property
 	def energy_through(self):
-		"""The larger of the work put in and the energy found in the sample, at most [J]."""
+		"""The larger of the work put in and the energy found in the sample, at most [J];
+		not a number where no book was kept."""
+		if self.energy("input") is None:
+			return math.nan
 		found = sum(values for values in map(self.energy, ENERGY_PARTS) if values is not None)
 		return float(max(np.abs(self.energy("input")).max(), np.max(found)))
 

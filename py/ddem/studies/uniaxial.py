@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """The uniaxial tests: crush a sample between platens, or pull it apart, keep the record, and know when to stop."""
+import math
 import time
 
 import numpy as np
@@ -100,13 +101,16 @@ class CompressionTest:
 	:param critical_dt: largest stable time step [s], to report
 	:param rows: records in the longest time
 	:param snapshots: False keeps none between start and end, where nothing is to be drawn
+	:param book: False keeps no energy book, which saves its time: no energies in the record, and an energy error
+		that is not a number
 	"""
 
 	kind = "compression"
 	sense = 1  #: in which stress, strain and forces of the platens, positive in compression, are recorded
 
 	def __init__(
-		self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS, snapshots=True
+		self, platens, duration, stop=0.2, recorders=(), critical_dt=float("nan"), rows=ROWS, snapshots=True,
+		book=True
 	):
 		if not duration > 0:
 			raise ValueError(f"duration = {duration} s must be positive")
@@ -119,7 +123,8 @@ class CompressionTest:
 			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
 		self.specimen, self.longest = Specimen(platens.sample), rows
 		self.rows, self.snapshots, self._peak, self._between = [], [], 0.0, snapshots
-		self.stopped = self._filed = None
+		self.stopped = self._filed = self.book = None
+		self._booked = book
 
 	def run(self, progress=True):
 		"""Run the test and return its :class:`runs.Run`. The scene stays as it is at the end,
@@ -139,7 +144,10 @@ class CompressionTest:
 		self._held = max(2, round(_HELD * steps / period))
 		self._end, self._dt = O.time + self.duration, O.dt
 		self.specimen.prepare()
-		self.book = EnergyBalance()
+		if self._booked:
+			self.book = EnergyBalance()
+		else:
+			O.trackEnergy = False
 		recorder = "__import__('yade.ddem.studies.uniaxial', fromlist=['running']).running.record()"
 		O.engines = O.engines + [
 			PyRunner(command=recorder, iterPeriod=period, firstIterRun=period, label=RECORDER)
@@ -166,7 +174,7 @@ class CompressionTest:
 
 	def record(self):
 		"""Add a row to the record; called by the scene."""
-		energies = self.book.record()
+		energies = self.book.record() if self.book else {}
 		row = {
 			"time": O.time,
 			**{
@@ -174,8 +182,9 @@ class CompressionTest:
 				for name in ("strain", "stress", "force_top", "force_bottom")
 			},
 			"damage": self.specimen.damage,
-			"energy_drift": self.book.drift,
 		}
+		if self.book:
+			row["energy_drift"] = self.book.drift
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
 		if self._between and len(self.rows) % (self.longest // SNAPSHOTS) == 0:
 			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
@@ -216,7 +225,7 @@ class CompressionTest:
 			steps=O.iter - self._first, wall=wall, busy=busy,
 			threads=O.numThreads, series=series, snapshots=self.snapshots,
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
-			energy_error=self.book.largest, stopped=self.stopped, extra=specimen.figures(),
+			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped, extra=specimen.figures(),
 			test=self.kind, broken=specimen.broken, effects=effects().rows()
 		)
 
