@@ -132,21 +132,92 @@ def test_other_settings_are_compared_with_the_last():
 	given = Ladder("turn", "rotation treatment", scene, rungs, [STRENGTH])
 	found = points.of_ladder(given, [[cost(1, ucs={"value": 99.0})], [cost(2, ucs={"value": 100.0})]], "scene")
 	assert found[0].error == pytest.approx(0.01) and math.isnan(found[1].error)
-	assert sentences.changes(found) == "Against cosserat: none changes strength by -1 % and costs 0.5 times."
+	assert (
+		sentences.changes(found)
+		== "Against cosserat: no rotation changes strength by -1 % and costs 0.5 times."
+	)
 	rate = Ladder("rate", "loading rate", scene, each("velocity", 2.0, 1.0), [STRENGTH])
 	found = points.of_ladder(rate, [[cost(1, ucs={"value": 110.0})], [cost(2, ucs={"value": 99.0})]], "scene")
 	assert (
 		sentences.slow_enough(found)
-		== "Loading: velocity 2 to velocity 1 moves strength by -10 % and costs 2 times."
+		== "Loading: 2 m/s to 1 m/s moves strength by -10 % and costs 2 times. "
+		"These speeds show no limit of the strength: none is known to be slow enough."
 	)
+
+
+def rates(values, speeds=(4.0, 2.0, 1.0, 0.5)):
+	"""Points of strengths [MPa] at these speeds, each of which costs as much more as it is slower."""
+	given = Ladder(
+		"rate", "loading rate", scene, each("velocity", *speeds), [STRENGTH], refined="velocity",
+		usual={"velocity": 1.0}
+	)
+	outcomes = [[cost(1 / speed, ucs={"value": 1e6 * value})] for speed, value in zip(speeds, values)]
+	return points.of_ladder(given, outcomes, "scene")
+
+
+def test_loading_is_slow_enough_where_the_strength_settles():
+	"""50 MPa and 0.9 % more per m/s: a first order whose limit is known, within 1.25 times 0.45 %."""
+	found = rates([50 * (1 + 0.009 * speed) for speed in (4.0, 2.0, 1.0, 0.5)])
+	limit = sentences.quasistatic(found)
+	assert limit.value == pytest.approx(50e6) and limit.order == pytest.approx(1)
+	assert sentences.slow_enough(found) == (
+		"Loading: as it slows down, strength tends to 50 MPa (order 1, itself within 0.56 %); 1 m/s as usual "
+		"is 0.9 % above; 2 m/s is slow enough for 2 % and costs 0.5 times; 1 m/s is slow enough for 1 % and costs "
+		"1 times."
+	)
+	coarse = rates([50 * (1 + 0.08 * speed) for speed in (4.0, 2.0, 1.0, 0.5)])  # 4 % at 0.5 m/s
+	assert (
+		"none that was run is known to be slow enough for 2 %, which by these laws takes a speed 4 times lower "
+		"and 4 times the cost"
+	) in sentences.slow_enough(coarse)
+
+
+def test_loading_that_does_not_settle_is_said_to():
+	found = rates([54.0, 53.0, 52.0, 50.0])  # moves more and more
+	assert sentences.quasistatic(found) is None
+	assert sentences.slow_enough(found).endswith("none is known to be slow enough.")
 
 
 def test_threads_are_told_by_the_clock():
 	given = Ladder("threads", "threads", scene, each("threads", 1, 2), [STRENGTH])
 	one, two = cost(4.0, ucs={"value": 7.0}), {**cost(4.4, ucs={"value": 7.0}), "wall_s": 2.4}
 	found = points.of_ladder(given, [[one], [two]], "scene")
-	said = "threads 2 take 0.6 of its time by the clock and 1.1 of its processor time, for the same strength"
-	assert sentences.threads(found) == f"Against threads 1: {said}."
+	said = (
+		"threads 2 take 0.6 of its time by the clock (efficiency 83 %) and 1.1 of its processor time, for the same "
+		"strength"
+	)
+	assert sentences.threads(found) == f"Against threads 1 of 500000 particles: {said}."
+	wall, processors, ideal = figures.threads(found).axes[0].lines
+	assert list(wall.get_xdata()) == [1, 2] and list(wall.get_ydata()) == [4.0, 2.4]
+	assert list(processors.get_ydata()) == [4.0, 4.4] and list(ideal.get_ydata()) == [4.0, 2.0]
+	assert figures.work_precision(found) is None and figures.threads(found[:1]) is None
+
+
+def test_an_energy_that_depends_on_the_mesh_is_said_to():
+	given = Ladder(
+		"crack", "mesh size", scene, each("size", *SIZES), [Quantity("energy per volume", "crack energy", "J/m²")],
+		refined="size"
+	)
+	entries = [{"value": 1e5 * size, "reference": 400.0, "error": abs(1e5 * size - 400) / 400} for size in SIZES]
+	outcomes = [[cost(1.0, size, **{"energy per volume": entry})] for size, entry in zip(SIZES, entries)]
+	found = points.of_ladder(given, outcomes, "scene")
+	said = "From 8 mm to 1 mm energy per volume goes from 800 J/m² to 100 J/m², as size^1; 400 J/m² is right."
+	assert sentences.mesh_dependence(found) == said and said in sentences.all_of(found)
+	line, right = figures.crack_energy(found).axes[0].lines
+	assert list(line.get_ydata()) == pytest.approx([100, 200, 400, 800]) and right.get_ydata()[0] == 400
+
+
+def test_marks_are_open_below_the_error_of_the_reference():
+	"""The limit of a first order from 8, 4, 2 and 1 mm is known within 1.25 times the finest one's error, which is
+	the only one that is smaller."""
+	outcomes = [[cost(1e-9 * size**-3, size, ucs={"value": 100 * (1 - 10 * size)})] for size in SIZES]
+	figure = figures.work_precision(points.of_ladder(ladder(STRENGTH), outcomes, "scene"))
+	line, open_, _ = figure.axes[0].lines
+	assert open_.get_markerfacecolor() == "white" and list(open_.get_ydata()) == pytest.approx([0.0125])
+	assert list(line.get_ydata()) == pytest.approx([0.08, 0.04, 0.02, 0.0125])
+	assert "below the error of the reference" in figure.legends[0].get_texts()[-1].get_text()
+	known = figures.work_precision(points.of_ladder(ladder(), [[second_order(size)] for size in SIZES], "scene"))
+	assert len(known.legends[0].get_texts()) == 1
 
 
 def test_pictures_are_drawn_where_there_is_something():
@@ -163,6 +234,7 @@ def test_pictures_are_drawn_where_there_is_something():
 		({"refined": "h"}, "setting 'h'"),
 		({"rungs": ({"size": 1.0}, {"size": 1.0})}, "same rung twice"),
 		({"quantities": [Quantity("x", "taste")]}, "kind 'taste' is unknown"),
+		({"usual": {"size": 2.0}}, "usual rung, 2000 mm, is none of its rungs"),
 	)
 )
 def test_bad_ladders_are_refused(wrong, says):

@@ -6,9 +6,15 @@ import origins
 import pytest
 import script_modules
 
+<<<<<<< HEAD
 from yade import O
 from yade.ddem.accuracy import ladders, points, prediction, rungs
 from yade.ddem.studies.workers import Here
+=======
+from yade import ConcreteDamageMat, O
+from yade.ddem.accuracy import ladders, points, rungs, study
+from yade.ddem.studies import virtualtest
+>>>>>>> 4606640 (accuracy: energy book, stiffness of rotation, crack energy and threads as ladders; the cheapest settings for an error in one sentence; a verdict on the speed of loading)
 
 MINE = '''
 from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
@@ -97,10 +103,29 @@ def test_wrong_options_are_refused_before_anything_runs(script, here, tmp_path, 
 
 def test_a_ladder_of_each_scene_runs(here):
 	"""The cheapest rung of the built-in ladders that need no other program, in this YADE."""
-	for name in ("plane_waves", "rayleigh_wave", "ucs_rotation", "ucs_flow"):
+	for name in ("plane_waves", "rayleigh_wave", "crack_band", "ucs_rotation", "ucs_beta", "ucs_flow"):
 		ladder, = ladders.find(name)
 		settings = ladder.settings(ladder.rungs[0])
 		outcome = rungs.perform(rungs.scene_name(ladder.scene), settings)
 		found = points.of_ladder(ladder, [[outcome]] * len(ladder.rungs), name)
 		assert not any(point.failed for point in found), name
+<<<<<<< HEAD
 		assert prediction.predict(found, 1e-9) is None  # all alike: no order
+=======
+		assert study.predict(found, 1e-9) is None  # all alike: no order
+
+
+def test_usual_rungs_are_what_the_scene_takes_where_nothing_is_said():
+	"""So that ladders of one scene can be combined."""
+	known = vars(virtualtest.Setup.standard("deformable", "block"))
+	concrete = ConcreteDamageMat()
+	asked = 0
+	for ladder in ladders.find("ucs"):
+		if ladder.kind in (*ladders.REFINED, "threads"):
+			continue
+		for name, value in ladder.usual.items():
+			for name, value in value.items() if isinstance(value, dict) else [(name, value)]:
+				assert value == (getattr(concrete, name) if hasattr(concrete, name) else known[name]), ladder.name
+				asked += 1
+	assert asked == 6
+>>>>>>> 4606640 (accuracy: energy book, stiffness of rotation, crack energy and threads as ladders; the cheapest settings for an error in one sentence; a verdict on the speed of loading)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter, NullLocator
 
 from .. import plots
@@ -13,7 +14,7 @@ _MARKS = ("o", "s", "^", "D", "v", "P", "X", "*")
 
 
 def _drawn(points):
-	return [p for p in points if not p.failed and sentences.known(p) > 0 and math.isfinite(p.error) and p.cpu_s > 0]
+	return [p for p in points if not p.failed and p.known > 0 and math.isfinite(p.error) and p.cpu_s > 0]
 
 
 def _mantissa(value):
@@ -42,8 +43,10 @@ def _axes(ax):
 def work_precision(points, width=plots.COLUMN):
 	"""Errors of one ladder against core-seconds: a line a quantity, a point a rung, ringed where it is on the
 	front; ranges of seeds as bars, slopes in the legend; the energy book in axes of its own. No error is drawn
-	below that of its reference.
-	None where nothing can be drawn."""
+	below that of its reference: the mark is open where it would be.
+	None where nothing can be drawn, and for threads, see :func:`threads`."""
+	if points[0].kind == "threads":
+		return None
 	groups = [group for group in map(_drawn, sentences.grouped(points).values()) if group]
 	books = [group for group in groups if group[0].of == "energy book"]
 	parts = [part for part in ([group for group in groups if group not in books], books) if part]
@@ -63,8 +66,20 @@ def work_precision(points, width=plots.COLUMN):
 			_axes(ax)
 			if ax is not grid[-1, 0]:
 				ax.set_xlabel("")
-		figure.legend(loc="outside upper center", ncols=1)
+		handles = [handle for ax in grid[:, 0] for handle in ax.get_legend_handles_labels()[0]]
+		if any(_hidden(p) for group in groups for p in group):
+			handles.append(
+				Line2D(
+					[], [], linestyle="none", marker="o", markersize=3.5, fillstyle="none", color="#555555",
+					label="open: below the error of the reference, drawn at it"
+				)
+			)
+		figure.legend(handles=handles, loc="outside upper center", ncols=1)
 	return figure
+
+
+def _hidden(point):
+	return point.error < point.reference_error
 
 
 def _label(ax, group):
@@ -73,7 +88,7 @@ def _label(ax, group):
 	if group[0].kind in sentences.COMPARED:
 		for number, p in enumerate(group, 1):
 			ax.annotate(
-				str(number), (p.cpu_s, sentences.known(p)), textcoords="offset points", xytext=(0, 7),
+				str(number), (p.cpu_s, p.known), textcoords="offset points", xytext=(0, 7),
 				ha="center", fontsize=6, color="#555555"
 			)
 		key = "\n".join(f"{number}: {p.rung}" for number, p in enumerate(group, 1))
@@ -81,13 +96,13 @@ def _label(ax, group):
 		return
 	for place, p in enumerate(group):
 		ax.annotate(
-			p.rung, (p.cpu_s, sentences.known(p)), textcoords="offset points",
+			p.rung, (p.cpu_s, p.known), textcoords="offset points",
 			xytext=(0, 7 if place % 2 else -11), ha="center", fontsize=6, color="#555555"
 		)
 
 
 def _line(ax, group, number):
-	x, y = np.array([p.cpu_s for p in group]), np.array([sentences.known(p) for p in group])
+	x, y = np.array([p.cpu_s for p in group]), np.array([p.known for p in group])
 	colour = plots.COLOURS[number % len(plots.COLOURS)]
 	_, slope = convergence.power_law(x, y)
 	apart = group[0].kind in sentences.COMPARED  # settings that stand for one another lie on no line
@@ -96,9 +111,13 @@ def _line(ax, group, number):
 	mark = _MARKS[number % len(_MARKS)]
 	line = "none" if apart else "-"
 	ax.plot(x, y, linestyle=line, marker=mark, markersize=3.5, color=colour, label=name)
+	open_ = [place for place, p in enumerate(group) if _hidden(p)]
+	ax.plot(
+		x[open_], y[open_], linestyle="none", marker=mark, markersize=3.5, color=colour, markerfacecolor="white"
+	)
 	front = [p for p in group if p.pareto]
 	ax.plot(
-		[p.cpu_s for p in front], [sentences.known(p) for p in front], "o", markersize=7, fillstyle="none",
+		[p.cpu_s for p in front], [p.known for p in front], "o", markersize=7, fillstyle="none",
 		color=colour,
 		markeredgewidth=0.6
 	)
@@ -107,7 +126,7 @@ def _line(ax, group, number):
 		if len(seeds) > 1:
 			ax.plot([p.cpu_s] * 2, [min(seeds), max(seeds)], color=colour, linewidth=0.6, alpha=0.6)
 		if p.cpu_range and p.cpu_range[1] > p.cpu_range[0]:
-			ax.plot(p.cpu_range, [sentences.known(p)] * 2, color=colour, linewidth=0.6, alpha=0.6)
+			ax.plot(p.cpu_range, [p.known] * 2, color=colour, linewidth=0.6, alpha=0.6)
 
 
 def two_errors(points, width=plots.COLUMN):
@@ -139,6 +158,77 @@ def two_errors(points, width=plots.COLUMN):
 		ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
 		ax.xaxis.set_minor_locator(NullLocator())
 		ax.legend()
+	return figure
+
+
+def threads(points, width=plots.COLUMN):
+	"""Time by the clock, processor time and what an ideal machine would take over the threads, for all ladders of
+	them, each with its particles. None where there is none with two rungs."""
+	ladders = {}
+	for p in points:
+		if p.kind == "threads" and not p.failed:
+			ladders.setdefault(p.ladder, {})[p.settings["threads"]] = p.cost
+	ladders = [sorted(costs.items()) for costs in ladders.values() if len(costs) > 1]
+	if not ladders:
+		return None
+	with rc_context(plots.STYLE):
+		figure = plots.figure(width, 0.9 * width)
+		ax = figure.add_subplot()
+		ax.set_xscale("log", base=2)
+		ax.set_yscale("log")
+		for number, costs in enumerate(ladders):
+			colour, counts = plots.COLOURS[number % len(plots.COLOURS)], np.array([n for n, _ in costs])
+			first = costs[0][1]
+			for key, line, name in (("wall_s", "o-", "by the clock"), ("cpu_s", "s--", "of processors")):
+				ax.plot(
+					counts, [cost[key] for _, cost in costs], line, markersize=3.5, color=colour,
+					label=f"{name}, {first['particles']:.0f} particles"
+				)
+			ax.plot(
+				counts, first["wall_s"] * counts[0] / counts, ":", color="#888888", linewidth=0.8,
+				label=None if number else "ideal"
+			)
+		counts = sorted({n for costs in ladders for n, _ in costs})
+		ax.set_xticks(counts, [f"{n}" for n in counts])
+		ax.xaxis.set_minor_locator(NullLocator())
+		ax.margins(x=0.1, y=0.1)
+		_ticks(ax.yaxis, *ax.get_ylim(), lambda value, _: f"{value:g}")
+		ax.set_xlabel("threads")
+		ax.set_ylabel("time of the steps [s]")
+		figure.legend(loc="outside upper center", ncols=1)
+	return figure
+
+
+def crack_energy(points, width=plots.COLUMN):
+	"""Energies of a crack over the size of the mesh, a line a quantity, and what is right. None where fewer than two
+	sizes have one."""
+	groups = [
+		sorted((p for p in group if not p.failed and p.value > 0), key=lambda p: p.step)
+		for group in sentences.grouped(points).values()
+		if group[0].of == "crack energy" and group[0].step is not None
+	]
+	groups = [group for group in groups if len(group) > 1]
+	if not groups:
+		return None
+	with rc_context(plots.STYLE):
+		figure = plots.figure(width, 0.75 * width)
+		ax = figure.add_subplot()
+		for number, group in enumerate(groups):
+			_, exponent = convergence.power_law([p.step for p in group], [p.value for p in group])
+			ax.loglog(
+				[1e3 * p.step for p in group], [p.value for p in group], marker=_MARKS[number], markersize=3.5,
+				color=plots.COLOURS[number], label=f"{group[0].quantity}: size$^{{{exponent:.2g}}}$"
+			)
+		right = groups[0][0].reference
+		ax.axhline(right, color="#888888", linewidth=0.8, linestyle="--", label="right: " + groups[0][0].source)
+		sizes = sorted({1e3 * p.step for group in groups for p in group})
+		ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
+		ax.xaxis.set_minor_locator(NullLocator())
+		ax.margins(x=0.08, y=0.15)
+		_ticks(ax.yaxis, *ax.get_ylim(), lambda value, _: f"{value:g}")
+		ax.set_xlabel("size [mm]")
+		ax.set_ylabel("energy of the crack [J/m²]")
+		figure.legend(loc="outside upper center", ncols=1)
 	return figure
 
 

@@ -19,6 +19,7 @@ A ladder of one's own is a few lines, in a file that ``accuracy_cost.py --ladder
 A scene is a function of its settings, a verification case by its name, whose records count, or :data:`UCS`, the
 specimens of :mod:`studies.virtualtest`. The setting ``threads`` is not the scene's, but that of its YADE.
 """
+import os
 from dataclasses import dataclass
 
 UCS = "ucs"  #: the scene of both models' compression tests
@@ -27,11 +28,11 @@ UCS = "ucs"  #: the scene of both models' compression tests
 QUANTITIES = (
 	"displacement", "stress", "frequency", "wave arrival", "crack energy", "UCS", "E", "energy book"
 )
-#: kinds of ladders, in the order of the page, and what their lines are drawn with
-KINDS = (
-	"mesh size", "number of particles", "rotation treatment", "law and effects", "time-step fraction",
-	"loading rate", "flowInterval", "threads"
-)
+REFINED = ("mesh size", "number of particles")  #: kinds of ladders whose rungs are finer and finer
+#: kinds whose rungs stand for one another; the last of each is the most complete one
+COMPARED = ("rotation treatment", "rotation stiffness", "law and effects", "flowInterval", "energy book")
+#: kinds of ladders, in the order of the page
+KINDS = (*REFINED, *COMPARED[:3], "time-step fraction", "loading rate", *COMPARED[3:], "threads")
 
 
 @dataclass(frozen=True)
@@ -62,11 +63,14 @@ class Ladder:
 	base: dict = None  # settings of all rungs
 	refined: str = ""  # setting that tends to zero, in which errors have an order; of a pair its mean counts
 	seeds: tuple = ()  # the scene is run with each, as setting "seed"; its values scatter
+	usual: dict = None  # the rung that the scene takes where nothing is said, with which other ladders run; the last
 
 	def __post_init__(self):
 		object.__setattr__(self, "rungs", tuple(dict(rung) for rung in self.rungs))
 		object.__setattr__(self, "quantities", tuple(self.quantities))
 		object.__setattr__(self, "base", dict(self.base or {}))
+		if self.rungs and self.usual is None:
+			object.__setattr__(self, "usual", self.rungs[-1])
 		if self.kind not in KINDS:
 			raise ValueError(
 				f"ladder '{self.name}': kind '{self.kind}' is unknown; there are {', '.join(KINDS)}"
@@ -81,6 +85,8 @@ class Ladder:
 			raise ValueError(f"ladder '{self.name}' needs rungs and quantities")
 		if len({label(rung) for rung in self.rungs}) < len(self.rungs):
 			raise ValueError(f"ladder '{self.name}' has the same rung twice")
+		if self.usual not in self.rungs:
+			raise ValueError(f"ladder '{self.name}': its usual rung, {label(self.usual)}, is none of its rungs")
 		if self.refined and any(self.refined not in self.settings(rung) for rung in self.rungs):
 			raise ValueError(
 				f"ladder '{self.name}': not every rung has the setting '{self.refined}' that is refined"
@@ -108,9 +114,15 @@ def label(rung):
 	return ", ".join(_words(name, value) for name, value in rung.items())
 
 
+_NAMES = {"rotationStiffness": "β_φ"}  # of settings, for people; of others their own with spaces
+
+
 def _words(name, value):
 	if name in ("size", "fine", "radius"):
 		return f"{1e3 * value:.4g} mm"
+	if name == "velocity":
+		return f"{value:g} m/s"
+	name = _NAMES.get(name, name.replace("_", " "))
 	if isinstance(value, bool):
 		return f"{name} {'on' if value else 'off'}"
 	if isinstance(value, dict):
@@ -120,7 +132,7 @@ def _words(name, value):
 	if isinstance(value, (list, tuple)):
 		return f"{name} {' to '.join(f'{v:g}' if isinstance(v, float) else str(v) for v in value)}"
 	if isinstance(value, str):
-		return value
+		return f"no {name}" if value == "none" else value
 	return f"{name} {value:g}"
 
 
@@ -130,6 +142,8 @@ _STRENGTH = (
 	Quantity("energy book", "energy book", "-", "energy_error", "first law")
 )
 _BLOCK = {"model": "deformable", "specimen": "block", "size": 0.008}
+_CORES = len(os.sched_getaffinity(0))
+_THREADS = tuple(dict.fromkeys((*(2**k for k in range(_CORES.bit_length())), _CORES)))  # 1, 2, 4 … and all
 
 LADDERS = (
 	Ladder(
@@ -181,9 +195,19 @@ LADDERS = (
 		{"model": "rigid", "specimen": "block"}, refined="radii", seeds=(1, 2, 3)
 	),
 	Ladder(
+		"crack_band", "mesh size", "crack_band", each("size", 0.012, 0.008, 0.006, 0.004, 0.003), (
+			Quantity("energy with a crack band", "crack energy", "J/m²", "energy until 0.1 mm with the"),
+			Quantity("energy per volume", "crack energy", "J/m²", "energy until 0.1 mm without the"),
+		), refined="size"
+	),
+	Ladder(
 		"ucs_rotation", "rotation treatment", UCS, each("rotation", "none", "corotational", "cosserat"),
 		_STRENGTH,
 		_BLOCK
+	),
+	Ladder(
+		"ucs_beta", "rotation stiffness", UCS,
+		tuple({"values": {"rotationStiffness": beta}} for beta in (20, 0, 2)), _STRENGTH, _BLOCK
 	),
 	Ladder(
 		"ucs_effects", "law and effects", UCS, (
@@ -194,13 +218,21 @@ LADDERS = (
 	),
 	Ladder(
 		"ucs_step", "time-step fraction", UCS, each("safety", 0.9, 0.8, 0.4, 0.2, 0.1), _STRENGTH, _BLOCK,
-		refined="safety"
+		refined="safety", usual={"safety": 0.8}
 	),
 	Ladder(
-		"ucs_rate", "loading rate", UCS, each("velocity", 4.0, 2.0, 1.0, 0.5, 0.25), _STRENGTH, _BLOCK,
-		refined="velocity"
+		"ucs_rate", "loading rate", UCS, each("velocity", 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625), _STRENGTH,
+		_BLOCK, refined="velocity", usual={"velocity": 1.0}
 	),
-	Ladder("ucs_threads", "threads", UCS, each("threads", 1, 2), _STRENGTH, {**_BLOCK, "size": 0.005}),
+	Ladder(
+		"ucs_book", "energy book", UCS, each("energy_book", False, True), _STRENGTH[:2],
+		{**_BLOCK, "size": 0.00625}, seeds=(1, 2, 3)
+	),
+	Ladder("ucs_threads", "threads", UCS, each("threads", *_THREADS), _STRENGTH[:1], {**_BLOCK, "size": 0.005}),
+	Ladder(
+		"ucs_threads_fine", "threads", UCS, each("threads", *_THREADS), _STRENGTH[:1],
+		{**_BLOCK, "size": 0.003125}
+	),
 	Ladder(
 		"ucs_flow", "flowInterval", UCS, each("flow_interval", 8, 4, 2, 1), _STRENGTH,
 		{**_BLOCK, "values": {"equationOfState": False}}

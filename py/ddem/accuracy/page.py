@@ -66,9 +66,10 @@ def write(points, told, study, folder, command):
 	ladders = {}
 	for point in points:
 		ladders.setdefault(point.ladder, []).append(point)
-	drawn = {"summary": figures.summary(points)}
+	drawn = {"summary": figures.summary(points), "threads": figures.threads(points)}
 	for name, group in ladders.items():
 		drawn[name] = figures.work_precision(group)
+		drawn[f"{name}_crack_energy"] = figures.crack_energy(group)
 		strengths = [p for p in group if p.of == "UCS"]
 		drawn[f"{name}_two_errors"] = figures.two_errors(strengths)
 	pictures = pages.save(drawn, folder)

@@ -2,10 +2,10 @@
 """Points of work and precision: what every rung of a ladder cost, and how far off it was. Needs no YADE."""
 import math
 from dataclasses import dataclass, field, replace
-from statistics import fmean, stdev
+from statistics import fmean, median, stdev
 
 from . import convergence
-from .ladders import label
+from .ladders import COMPARED, label
 
 NOT_RUN = "not run: "  #: how the outcome of a rung begins for which there was no time
 #: costs that are averaged over seeds
@@ -23,6 +23,8 @@ class Point:
 	unit: str
 	rung: str  # in words
 	settings: dict
+	change: dict = field(default_factory=dict)  # of the settings, what this rung has of its own
+	usual: bool = False  # whether the other ladders of the scene run with it
 	step: float = None  # what is refined; None where nothing is
 	value: float = math.nan  # mean over seeds
 	scatter: float = None  # standard deviation over seeds, over the mean [-]
@@ -32,7 +34,7 @@ class Point:
 	reference_error: float = 0.0  # of the reference itself [-]
 	source: str = ""  # of the reference
 	cost: dict = field(default_factory=dict)
-	cpu_range: tuple = ()  # least and most core-seconds of the seeds [s]
+	cpu_each: tuple = ()  # core-seconds of every seed [s]
 	failed: str = ""  # why there is no result
 	skipped: bool = False  # it was not run: there was no time
 	pareto: bool = False  # whether no other rung of the ladder is both cheaper and closer
@@ -41,6 +43,26 @@ class Point:
 	def cpu_s(self):
 		"""Core-seconds of its steps, mean over seeds."""
 		return self.cost.get("cpu_s", math.nan)
+
+	@property
+	def cpu_range(self):
+		"""Least and most core-seconds of the seeds [s]; empty where there are none."""
+		return (min(self.cpu_each), max(self.cpu_each)) if self.cpu_each else ()
+
+	@property
+	def known(self):
+		"""The error that can be told: no less than that of the reference [-]."""
+		return max(self.error, self.reference_error)
+
+	def ratios(self, other):
+		"""Core-seconds over those of another rung [-], of every seed."""
+		if len(self.cpu_each) == len(other.cpu_each) > 0:
+			return [mine / its for mine, its in zip(self.cpu_each, other.cpu_each)]
+		return [self.cpu_s / other.cpu_s]
+
+	def ratio(self, other):
+		"""Core-seconds over those of another rung [-]: the median of the seeds, since machines are noisy."""
+		return median(self.ratios(other))
 
 	def plain(self):
 		"""For cost.json; None where a number is not finite."""
@@ -95,8 +117,7 @@ def of_ladder(ladder, outcomes, scene):
 def _measured(ladder, quantity, rung, outcome, scene):
 	point = Point(
 		ladder.name, ladder.kind, scene, quantity.name, quantity.kind, quantity.unit, label(rung),
-		ladder.settings(rung),
-		ladder.step(rung), source=quantity.source
+		ladder.settings(rung), rung, rung == ladder.usual, ladder.step(rung), source=quantity.source
 	)
 	wrong = [text for text in outcome if isinstance(text, str)]
 	if wrong:
@@ -112,8 +133,7 @@ def _measured(ladder, quantity, rung, outcome, scene):
 	known = [error for _, _, error in samples]
 	point = replace(
 		point, value=mean, scatter=stdev(values) / abs(mean) if len(values) > 1 and mean else None,
-		cost=cost,
-		cpu_range=(min(one["cpu_s"] for one in outcome), max(one["cpu_s"] for one in outcome))
+		cost=cost, cpu_each=tuple(one["cpu_s"] for one in outcome)
 	)
 	if None in known:
 		return replace(point, errors=tuple(values))  # values so far: their reference is not known yet
@@ -151,6 +171,8 @@ def _with_errors(ladder, points):
 			else "no order observed: the finest"
 		)
 		source = f"Richardson's limit of this ladder, {order}"
+	elif ladder.kind in COMPARED:
+		own = 0.0  # the most complete setting is what the others are measured by
 	elif len(open_) > 1:
 		own = abs(open_[-1].value - open_[-2].value) / abs(limit)
 

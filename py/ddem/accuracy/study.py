@@ -3,6 +3,7 @@
 import math
 import os
 import time
+from dataclasses import replace
 
 from yade import config
 
@@ -10,7 +11,7 @@ from ..studies.commandline import plugin
 from ..studies.evaluations import Bench
 from ..studies.workers import Here
 from . import points, rungs
-from .ladders import Ladder, label
+from .ladders import label
 from .prediction import predict
 
 STORE = "rungs.jsonl"  #: in the folder of a study
@@ -120,11 +121,7 @@ class Study:
 		predicted = predict([p for p in self.points(ladder) if p.quantity == ladder.quantities[0].name], target)
 		if predicted is None or predicted.cpu_s * max(1, len(ladder.seeds)) > self.left:
 			return ladder
-		more = Ladder(
-			ladder.name, ladder.kind, ladder.scene,
-			(*ladder.rungs, {**ladder.rungs[-1], ladder.refined: predicted.step}),
-			ladder.quantities, ladder.base, ladder.refined, ladder.seeds
-		)
+		more = replace(ladder, rungs=(*ladder.rungs, {**ladder.rungs[-1], ladder.refined: predicted.step}))
 		self._rung(more, len(more.rungs) - 1)
 		self.predictions.append((more, predicted, self.points(more)[len(more.rungs) - 1]))
 		return more
