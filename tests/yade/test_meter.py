@@ -1,11 +1,13 @@
 # GPL v2 or later, see LICENSE.
 """What counts as cost: the steps that YADE makes, however they are asked for."""
+import builtins
 import re
 
 import pytest
 
 from deformable_samples import elastic, skewed_mesh, start
 from yade import O, PyRunner, ddem, utils
+from yade.ddem import meter as meters
 from yade.ddem.meter import StepMeter, particles, refined, unknowns
 
 
@@ -69,6 +71,34 @@ def test_engines_that_record_do_not_count(monkeypatch):
 		O.run(50, True)
 	O.timingEnabled = False
 	assert without.steps == 100 and without.cpu_s == half  # what is left of the second run is nothing
+
+
+def test_what_a_recorder_waits_for_the_processor_is_no_time_of_it(monkeypatch):
+	"""By clocks that go on for what is written here alone. In a step a recorder works for 3 s and waits for 2 s;
+	calling it takes half a second more, as YADE says, and all else 1 s of two threads."""
+	process, thread, clock = [0.0], [0.0], [0.0]
+	monkeypatch.setattr(meters, "_now", lambda: (process[0], thread[0], clock[0]))
+
+	@meters.recording()
+	def record():
+		process[0], thread[0], clock[0] = process[0] + 3, thread[0] + 3, clock[0] + 5
+
+	def step():
+		process[0], clock[0] = process[0] + 2.5, clock[0] + 1.5
+		record()
+
+	monkeypatch.setattr(builtins, "step_of_test", step, raising=False)
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	O.engines = O.engines + [PyRunner(command="step_of_test()", iterPeriod=1)]
+	with StepMeter(apart=["recorder"]) as meter:
+		monkeypatch.setattr(meter, "_of_others", lambda: 5.5 * thread[0] / 3)
+		O.run(50, True)
+		process[0] += 7  # between runs
+		O.run(50, True)
+	calls = thread[0] / 3
+	assert calls in (99, 100) and meter.steps == 100  # YADE leaves out the first step of all
+	assert meter.cpu_s == pytest.approx(2 * calls) and meter.wall_s == pytest.approx(calls)
 
 
 def test_a_run_says_what_it_cost(capfd):
