@@ -97,6 +97,8 @@ def test_two_errors_of_fracture_and_where_they_cross():
 	found = points.of_ladder(ladder(STRENGTH, seeds=(1, 2, 3)), [samples(size, 0.02) for size in SIZES], "scene")
 	assert found[0].scatter == pytest.approx(0.02 / 0.92)
 	assert len(found[0].errors) == 3 and found[0].source.startswith("Richardson's limit")
+	# the finest is 1 % below the limit; its mean is known within its scatter over √3
+	assert found[-1].reference_error == pytest.approx(1.25 * 0.01 + found[-1].scatter / math.sqrt(3))
 	h, discretisation, scatter = sentences.two_errors(found)
 	assert h == list(SIZES[:-1]) and discretisation == pytest.approx([0.04 / 0.96, 0.02 / 0.98, 0.01 / 0.99])
 	assert scatter == pytest.approx([0.02 / 0.92, 0.02 / 0.96, 0.02 / 0.98])
@@ -140,7 +142,7 @@ def test_other_settings_are_compared_with_the_last():
 	found = points.of_ladder(rate, [[cost(1, ucs={"value": 110.0})], [cost(2, ucs={"value": 99.0})]], "scene")
 	assert (
 		sentences.slow_enough(found)
-		== "Loading: 2 m/s to 1 m/s moves strength by -10 % and costs 2 times. "
+		== "Loading (rate): 2 m/s to 1 m/s moves strength by -10 % and costs 2 times. "
 		"These speeds show no limit of the strength: none is known to be slow enough."
 	)
 
@@ -161,9 +163,9 @@ def test_loading_is_slow_enough_where_the_strength_settles():
 	limit = sentences.quasistatic(found)
 	assert limit.value == pytest.approx(50e6) and limit.order == pytest.approx(1)
 	assert sentences.slow_enough(found) == (
-		"Loading: as it slows down, strength tends to 50 MPa (order 1, itself within 0.56 %); 1 m/s as usual "
-		"is 0.9 % above; 2 m/s is slow enough for 2 % and costs 0.5 times; 1 m/s is slow enough for 1 % and costs "
-		"1 times."
+		"Loading (rate): as it slows down, strength tends to 50 MPa (order 1, itself within 0.56 %); 1 m/s as "
+		"usual is 0.9 % above; 2 m/s is slow enough for 2 % and costs 0.5 times; 1 m/s is slow enough for 1 % "
+		"and costs 1 times."
 	)
 	coarse = rates([50 * (1 + 0.08 * speed) for speed in (4.0, 2.0, 1.0, 0.5)])  # 4 % at 0.5 m/s
 	assert (
@@ -183,8 +185,8 @@ def test_threads_are_told_by_the_clock():
 	one, two = cost(4.0, ucs={"value": 7.0}), {**cost(4.4, ucs={"value": 7.0}), "wall_s": 2.4}
 	found = points.of_ladder(given, [[one], [two]], "scene")
 	said = (
-		"threads 2 take 0.6 of its time by the clock (efficiency 83 %) and 1.1 of its processor time, for the same "
-		"strength"
+		"threads 2 take 0.6 of its time by the clock (efficiency 83 %) and 1.1 of its processor time, for the "
+		"same strength"
 	)
 	assert sentences.threads(found) == f"Against threads 1 of 500000 particles: {said}."
 	wall, processors, ideal = figures.threads(found).axes[0].lines
@@ -194,14 +196,12 @@ def test_threads_are_told_by_the_clock():
 
 
 def test_an_energy_that_depends_on_the_mesh_is_said_to():
-	given = Ladder(
-		"crack", "mesh size", scene, each("size", *SIZES), [Quantity("energy per volume", "crack energy", "J/m²")],
-		refined="size"
-	)
+	energy = Quantity("energy per volume", "crack energy", "J/m²", source="the point")
+	given = Ladder("crack", "mesh size", scene, each("size", *SIZES), [energy], refined="size")
 	entries = [{"value": 1e5 * size, "reference": 400.0, "error": abs(1e5 * size - 400) / 400} for size in SIZES]
 	outcomes = [[cost(1.0, size, **{"energy per volume": entry})] for size, entry in zip(SIZES, entries)]
 	found = points.of_ladder(given, outcomes, "scene")
-	said = "From 8 mm to 1 mm energy per volume goes from 800 J/m² to 100 J/m², as size^1; 400 J/m² is right."
+	said = "From 8 mm to 1 mm energy per volume goes from 800 J/m² to 100 J/m², as size^1; the point: 400 J/m²."
 	assert sentences.mesh_dependence(found) == said and said in sentences.all_of(found)
 	line, right = figures.crack_energy(found).axes[0].lines
 	assert list(line.get_ydata()) == pytest.approx([100, 200, 400, 800]) and right.get_ydata()[0] == 400

@@ -21,9 +21,8 @@ def group(name, kind, rungs, outcomes, **more):
 	"""Points of a ladder; each rung's outcome is (strength, core-seconds), or a list of these, one a seed."""
 	given = Ladder(name, kind, "ucs", rungs, [STRENGTH], {**BASE, **more.pop("base", {})}, **more)
 	outcomes = [one if isinstance(one, list) else [one] for one in outcomes]
-	return points.of_ladder(
-		given, [[outcome(*one) if isinstance(one, tuple) else one for one in seeds] for seeds in outcomes], "ucs"
-	)
+	outcomes = [[outcome(*one) if isinstance(one, tuple) else one for one in seeds] for seeds in outcomes]
+	return points.of_ladder(given, outcomes, "ucs")
 
 
 def mesh():
@@ -144,9 +143,9 @@ def test_clauses_of_ladders_that_were_not_run_are_left_out():
 def test_the_rate_is_named_beside_what_it_changes():
 	rate = group(
 		"rate", "loading rate", each("velocity", 2.0, 1.0, 0.5), [(120.0, 1.0), (110.0, 2.0), (105.0, 4.0)],
-		refined="velocity", usual={"velocity": 1.0}
+		refined="velocity", usual={"velocity": 1.0}, base={"rotation": "corotational"}
 	)
 	groups = [mesh(), rate]
 	assert sentences.headline(groups[0], groups).endswith(
-		"; all at 1 m/s, where strength is 10 % above that of slow loading."
+		"; all at 1 m/s, where strength is 10 % above that of slow loading (corotational)."
 	)

@@ -143,9 +143,8 @@ def test_parts_of_the_energy_book(runs):
 def test_a_run_without_an_energy_book_draws_none(runs):
 	kept, without = runs
 	kinds = {name: unit for name, unit in without.series.units.items() if not name.startswith("energy_")}
-	without = dataclasses.replace(
-		without, series=Series.of(kinds, **{name: without.series[name] for name in kinds}), energy_error=math.nan
-	)
+	series = Series.of(kinds, **{name: without.series[name] for name in kinds})
+	without = dataclasses.replace(without, series=series, energy_error=math.nan)
 	assert math.isnan(without.energy_through) and without.summary()["energy_error"] is None
 	assert energy([without]) is None and len(energy([kept, without]).axes) == 2
 

@@ -6,15 +6,10 @@ import origins
 import pytest
 import script_modules
 
-<<<<<<< HEAD
-from yade import O
-from yade.ddem.accuracy import ladders, points, prediction, rungs
-from yade.ddem.studies.workers import Here
-=======
 from yade import ConcreteDamageMat, O
-from yade.ddem.accuracy import ladders, points, rungs, study
+from yade.ddem.accuracy import ladders, points, prediction, rungs
 from yade.ddem.studies import virtualtest
->>>>>>> 4606640 (accuracy: energy book, stiffness of rotation, crack energy and threads as ladders; the cheapest settings for an error in one sentence; a verdict on the speed of loading)
+from yade.ddem.studies.workers import Here
 
 MINE = '''
 from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
@@ -109,10 +104,7 @@ def test_a_ladder_of_each_scene_runs(here):
 		outcome = rungs.perform(rungs.scene_name(ladder.scene), settings)
 		found = points.of_ladder(ladder, [[outcome]] * len(ladder.rungs), name)
 		assert not any(point.failed for point in found), name
-<<<<<<< HEAD
 		assert prediction.predict(found, 1e-9) is None  # all alike: no order
-=======
-		assert study.predict(found, 1e-9) is None  # all alike: no order
 
 
 def test_usual_rungs_are_what_the_scene_takes_where_nothing_is_said():
@@ -125,7 +117,7 @@ def test_usual_rungs_are_what_the_scene_takes_where_nothing_is_said():
 			continue
 		for name, value in ladder.usual.items():
 			for name, value in value.items() if isinstance(value, dict) else [(name, value)]:
-				assert value == (getattr(concrete, name) if hasattr(concrete, name) else known[name]), ladder.name
+				usual = getattr(concrete, name) if hasattr(concrete, name) else known[name]
+				assert value == usual, ladder.name
 				asked += 1
-	assert asked == 6
->>>>>>> 4606640 (accuracy: energy book, stiffness of rotation, crack energy and threads as ladders; the cheapest settings for an error in one sentence; a verdict on the speed of loading)
+	assert asked == 7

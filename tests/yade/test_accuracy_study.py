@@ -170,3 +170,14 @@ def test_the_files(tmp_path):
 	assert ddem.provenance.KEY in rows[0]
 	assert (tmp_path / "cost.csv").read_text().startswith("case,ladder,kind,quantity")
 	assert page.table(found).splitlines()[0].split()[:3] == ["ladder", "rung", "quantity"]
+
+
+def test_settings_that_stand_for_one_another_are_expected_to_cost_alike(tmp_path):
+	"""The first takes 0.125 s, and 0.9 s are left: enough for one that costs twice as much, not eight times."""
+	rungs_ = ({"size": 0.002, "rotation": "none"}, {"size": 0.002, "rotation": "cosserat"})
+	turn = Ladder("turn", "rotation treatment", "cantilever", rungs_, [DEFLECTION])
+	found = study.Study([turn], str(tmp_path / "turn"), budget=0.9, evaluate=Known()).run()
+	assert not any(p.skipped for p in found)
+	finer = ladder(rungs_=each("size", 0.002, 0.0019))
+	found = study.Study([finer], str(tmp_path / "finer"), budget=0.9, evaluate=Known()).run()
+	assert [p.skipped for p in found] == [False, True]

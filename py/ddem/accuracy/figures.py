@@ -70,8 +70,8 @@ def work_precision(points, width=plots.COLUMN):
 		if any(_hidden(p) for group in groups for p in group):
 			handles.append(
 				Line2D(
-					[], [], linestyle="none", marker="o", markersize=3.5, fillstyle="none", color="#555555",
-					label="open: below the error of the reference, drawn at it"
+					[], [], linestyle="none", marker="o", markersize=3.5, fillstyle="none",
+					color="#555555", label="open: below the error of the reference, drawn at it"
 				)
 			)
 		figure.legend(handles=handles, loc="outside upper center", ncols=1)
@@ -200,8 +200,8 @@ def threads(points, width=plots.COLUMN):
 
 
 def crack_energy(points, width=plots.COLUMN):
-	"""Energies of a crack over the size of the mesh, a line a quantity, and what is right. None where fewer than two
-	sizes have one."""
+	"""Energies of a crack over the size of the mesh, a line a quantity, and their reference.
+	None where fewer than two sizes have one."""
 	groups = [
 		sorted((p for p in group if not p.failed and p.value > 0), key=lambda p: p.step)
 		for group in sentences.grouped(points).values()
@@ -216,11 +216,12 @@ def crack_energy(points, width=plots.COLUMN):
 		for number, group in enumerate(groups):
 			_, exponent = convergence.power_law([p.step for p in group], [p.value for p in group])
 			ax.loglog(
-				[1e3 * p.step for p in group], [p.value for p in group], marker=_MARKS[number], markersize=3.5,
-				color=plots.COLOURS[number], label=f"{group[0].quantity}: size$^{{{exponent:.2g}}}$"
+				[1e3 * p.step for p in group], [p.value for p in group], marker=_MARKS[number],
+				markersize=3.5, color=plots.COLOURS[number],
+				label=f"{group[0].quantity}, size$^{{{exponent:.1g}}}$"
 			)
 		right = groups[0][0].reference
-		ax.axhline(right, color="#888888", linewidth=0.8, linestyle="--", label="right: " + groups[0][0].source)
+		ax.axhline(right, color="#888888", linewidth=0.8, linestyle="--", label=groups[0][0].source)
 		sizes = sorted({1e3 * p.step for group in groups for p in group})
 		ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
 		ax.xaxis.set_minor_locator(NullLocator())
@@ -233,11 +234,12 @@ def crack_energy(points, width=plots.COLUMN):
 
 
 def summary(points, width=plots.PAGE):
-	"""The fronts of all ladders that refine, a line each. None where there is none."""
+	"""The fronts of all ladders that refine, a line each, without what does not converge: the energy book and
+	energies of cracks. Marks are open as in :func:`work_precision`. None where there is none."""
 	groups = [
 		[p for p in _drawn(group) if p.pareto]
 		for group in sentences.grouped(points).values()
-		if group[0].kind in sentences.REFINED and group[0].of != "energy book"
+		if group[0].kind in sentences.REFINED and group[0].of not in ("energy book", "crack energy")
 	]
 	groups = [group for group in groups if len(group) > 1]
 	if not groups:
@@ -246,11 +248,16 @@ def summary(points, width=plots.PAGE):
 		figure = plots.figure(width, 0.5 * width)
 		ax = figure.add_subplot()
 		for number, group in enumerate(groups):
+			colour = plots.COLOURS[number % len(plots.COLOURS)]
+			mark = _MARKS[number // len(plots.COLOURS)]
 			ax.plot(
-				[p.cpu_s for p in group], [p.error for p in group],
-				marker=_MARKS[number // len(plots.COLOURS)],
-				markersize=3.5, color=plots.COLOURS[number % len(plots.COLOURS)],
-				label=f"{group[0].quantity} ({group[0].ladder})"
+				[p.cpu_s for p in group], [p.known for p in group], marker=mark, markersize=3.5,
+				color=colour, label=f"{group[0].quantity} ({group[0].ladder})"
+			)
+			hidden = [p for p in group if _hidden(p)]
+			ax.plot(
+				[p.cpu_s for p in hidden], [p.known for p in hidden], linestyle="none", marker=mark,
+				markersize=3.5, color=colour, markerfacecolor="white"
 			)
 		_axes(ax)
 		figure.legend(loc="outside right upper")

@@ -63,7 +63,8 @@ class Ladder:
 	base: dict = None  # settings of all rungs
 	refined: str = ""  # setting that tends to zero, in which errors have an order; of a pair its mean counts
 	seeds: tuple = ()  # the scene is run with each, as setting "seed"; its values scatter
-	usual: dict = None  # the rung that the scene takes where nothing is said, with which other ladders run; the last
+	# the rung that the scene takes where nothing is said, with which the other ladders run; None: the last
+	usual: dict = None
 
 	def __post_init__(self):
 		object.__setattr__(self, "rungs", tuple(dict(rung) for rung in self.rungs))
@@ -86,7 +87,9 @@ class Ladder:
 		if len({label(rung) for rung in self.rungs}) < len(self.rungs):
 			raise ValueError(f"ladder '{self.name}' has the same rung twice")
 		if self.usual not in self.rungs:
-			raise ValueError(f"ladder '{self.name}': its usual rung, {label(self.usual)}, is none of its rungs")
+			raise ValueError(
+				f"ladder '{self.name}': its usual rung, {label(self.usual)}, is none of its rungs"
+			)
 		if self.refined and any(self.refined not in self.settings(rung) for rung in self.rungs):
 			raise ValueError(
 				f"ladder '{self.name}': not every rung has the setting '{self.refined}' that is refined"
@@ -142,6 +145,9 @@ _STRENGTH = (
 	Quantity("energy book", "energy book", "-", "energy_error", "first law")
 )
 _BLOCK = {"model": "deformable", "specimen": "block", "size": 0.008}
+_SPEEDS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
+_SLOW = {**_BLOCK, "rotation": "corotational"}  # below 0.1 m/s cosserat cores lose strength, more the longer it takes
+_BAND = "material point of a band 10 mm wide"
 _CORES = len(os.sched_getaffinity(0))
 _THREADS = tuple(dict.fromkeys((*(2**k for k in range(_CORES.bit_length())), _CORES)))  # 1, 2, 4 … and all
 
@@ -196,8 +202,8 @@ LADDERS = (
 	),
 	Ladder(
 		"crack_band", "mesh size", "crack_band", each("size", 0.012, 0.008, 0.006, 0.004, 0.003), (
-			Quantity("energy with a crack band", "crack energy", "J/m²", "energy until 0.1 mm with the"),
-			Quantity("energy per volume", "crack energy", "J/m²", "energy until 0.1 mm without the"),
+			Quantity("energy, crack band", "crack energy", "J/m²", "energy until 0.1 mm with the", _BAND),
+			Quantity("energy, per volume", "crack energy", "J/m²", "energy until 0.1 mm without", _BAND),
 		), refined="size"
 	),
 	Ladder(
@@ -221,8 +227,12 @@ LADDERS = (
 		refined="safety", usual={"safety": 0.8}
 	),
 	Ladder(
-		"ucs_rate", "loading rate", UCS, each("velocity", 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625), _STRENGTH,
-		_BLOCK, refined="velocity", usual={"velocity": 1.0}
+		"ucs_rate", "loading rate", UCS, each("velocity", *_SPEEDS), _STRENGTH, _SLOW, refined="velocity",
+		usual={"velocity": 1.0}
+	),
+	Ladder(
+		"ucs_rate_inertia", "loading rate", UCS, each("velocity", *_SPEEDS), _STRENGTH,
+		{**_SLOW, "values": {"rateDependence": False}}, refined="velocity", usual={"velocity": 1.0}
 	),
 	Ladder(
 		"ucs_book", "energy book", UCS, each("energy_book", False, True), _STRENGTH[:2],

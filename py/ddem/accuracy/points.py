@@ -164,7 +164,10 @@ def _with_errors(ladder, points):
 	steps = [p.step for p in open_]
 	if ladder.refined and len(set(steps)) > 2:
 		found = convergence.richardson(steps, [p.value for p in open_])
-		limit, own = found.value, found.error / abs(found.value)
+		# where samples scatter, the limit is no better known than the mean of the finest
+		finest = min(open_, key=lambda p: p.step)
+		scatter = (finest.scatter or 0.0) / math.sqrt(max(1, len(finest.errors)))
+		limit, own = found.value, found.error / abs(found.value) + scatter
 		order = (
 			f"observed order {found.order:.2g}"
 			if math.isfinite(found.order)

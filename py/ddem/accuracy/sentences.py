@@ -4,7 +4,7 @@ import math
 from statistics import median
 
 from . import convergence, recommendation
-from .ladders import COMPARED, REFINED
+from .ladders import COMPARED, REFINED, label
 
 _TARGETS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 1e-4, 1e-5)
 _NOTHING = 0.001  #: a setting that changes a quantity by less changes nothing
@@ -68,7 +68,7 @@ def two_errors(points):
 	"""Sizes and both errors of fracture, for the points of a ladder with seeds: (h, error of discretisation,
 	scatter). The first is the difference of the means on h and on h/2, which needs no limit; only sizes whose half
 	has been run count."""
-	good = sorted((p for p in points if not p.failed and p.scatter is not None), key=lambda p: -p.step)
+	good = sorted((p for p in points if not p.failed and p.scatter is not None and p.step), key=lambda p: -p.step)
 	pairs = [(p, half) for p in good for half in good if abs(half.step / p.step - 0.5) < 0.01]
 	if len(pairs) < 2:
 		return [], [], []
@@ -168,23 +168,33 @@ def slow_enough(points):
 	name, limit = points[0].quantity, quasistatic(points)
 	if len(good) < 2:
 		return ""
+	standard = recommendation.usual(points) or good[0]
+	begin = f"Loading ({points[0].ladder}): "
 	if limit is None:
+		pairs = list(zip(good, good[1:]))
 		told = [
-			f"{a.rung} to {b.rung} moves {name} by {100 * _change(b, a):+.2g} % and costs {b.ratio(a):.2g} times"
-			for a, b in zip(good, good[1:])
+			(
+				f"{a.rung} to {b.rung} moves {name} by {100 * _change(b, a):+.2g} % and costs "
+				f"{b.ratio(a):.2g} times"
+			)
+			for a, b in pairs
+			if a is standard or b is good[-1]
 		]
 		return (
-			f"Loading: {'; '.join(told)}. These speeds show no limit of the {name}: none is known to be slow "
+			f"{begin}{'; '.join(told)}. These speeds show no limit of the {name}: none is known to be slow "
 			"enough."
 		)
-	standard = recommendation.usual(points) or good[0]
-	own = limit.error / abs(limit.value)
+	own, change = limit.error / abs(limit.value), standard.value / limit.value - 1
 	text = (
-		f"Loading: as it slows down, {name} tends to {amount(limit.value, points[0].unit)} (order "
-		f"{limit.order:.2g}, itself within {per_cent(own)}); {standard.rung}{' as usual' if standard.usual else ''} "
-		f"is {per_cent(abs(standard.value / limit.value - 1))} {'above' if standard.value > limit.value else 'below'}"
+		f"{begin}as it slows down, {name} tends to {amount(limit.value, points[0].unit)} (order "
+		f"{limit.order:.2g}, itself within {per_cent(own)}); {standard.rung}"
+		f"{' as usual' if standard.usual else ''} is {per_cent(abs(change))} {_side(change)}"
 	)
 	return f"{text}; {'; '.join(_slow_for(target, good, standard, limit) for target in (0.02, 0.01))}."
+
+
+def _side(change):
+	return "above" if change > 0 else "below"
 
 
 def _slow_for(target, good, standard, limit):
@@ -198,8 +208,8 @@ def _slow_for(target, good, standard, limit):
 	_, growth = convergence.power_law([p.step for p in good[-2:]], [p.cpu_s for p in good[-2:]])
 	times = last.ratio(standard) * (speed / last.step)**growth
 	return (
-		f"none that was run is known to be slow enough for {per_cent(target)}, which by these laws takes a speed "
-		f"{standard.step / speed:.2g} times lower and {times:.2g} times the cost"
+		f"none that was run is known to be slow enough for {per_cent(target)}, which by these laws takes a "
+		f"speed {standard.step / speed:.2g} times lower and {times:.2g} times the cost"
 	)
 
 
@@ -212,15 +222,16 @@ def mesh_dependence(points):
 	first, last = good[0], good[-1]
 	return (
 		f"From {first.rung} to {last.rung} {first.quantity} goes from {amount(first.value, first.unit)} to "
-		f"{amount(last.value, last.unit)}, as size^{exponent:.2g}; {amount(first.reference, first.unit)} is right."
+		f"{amount(last.value, last.unit)}, as size^{exponent:.1g}; {first.source}: "
+		f"{amount(first.reference, first.unit)}."
 	)
 
 
 def headline(group, groups):
-	"""What an error costs with all settings chosen for it, and what counts beside them: "2 % in strength costs about
-	14 s: 4 mm, corotational, safety 0.8; 1 % costs about 95 s: 2.5 mm, …; below 0.7 % the scatter of samples hides
-	the mesh; the energy book is 6 % of it; β_φ changes nothing here." A clause whose ladder was not run is left out;
-	empty where no other ladder of the scene was.
+	"""What an error costs with all settings chosen for it, and what counts beside them: "2 % in strength costs
+	about 14 s: 4 mm, corotational, safety 0.8; 1 % costs about 95 s: 2.5 mm, …; below 0.7 % the scatter of samples
+	hides the mesh; the energy book is 6 % of it; β_φ changes nothing here." A clause whose ladder was not run is
+	left out; empty where no other ladder of the scene was.
 
 	:param group: points of one quantity of a ladder that refines
 	:param groups: points of all ladders, a list each
@@ -244,7 +255,7 @@ def headline(group, groups):
 	crossed = recommended(group)
 	if crossed:
 		clauses.append(f"below {per_cent(crossed[1])} the scatter of samples hides the mesh")
-	clauses += [clause for other in beside for clause in [_beside(other)] if clause]
+	clauses += [clause for other in beside if (clause := _beside(other, group[0]))]
 	text = "; ".join(clauses)
 	return f"{text[0].upper()}{text[1:]}." if text else ""
 
@@ -254,8 +265,8 @@ def _named(points):
 	return [p.rung for p in points if not (p.usual and p.kind in ("law and effects", "flowInterval"))]
 
 
-def _beside(points):
-	"""A clause on what is not combined; empty where there is nothing to say."""
+def _beside(points, sized):
+	"""A clause on what is not combined with a size; empty where there is nothing to say."""
 	standard, kind = recommendation.usual(points), points[0].kind
 	others = [p for p in points if not p.failed and p is not standard]
 	if not others:
@@ -274,9 +285,11 @@ def _beside(points):
 	if limit is None:
 		return ""
 	change = standard.value / limit.value - 1
+	shared = {**sized.settings, **standard.change}
+	own = label({name: value for name, value in standard.settings.items() if name not in shared})
 	return (
 		f"all at {standard.rung}, where {points[0].quantity} is {per_cent(abs(change))} "
-		f"{'above' if change > 0 else 'below'} that of slow loading"
+		f"{_side(change)} that of slow loading{f' ({own})' if own else ''}"
 	)
 
 

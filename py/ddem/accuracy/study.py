@@ -11,11 +11,12 @@ from ..studies.commandline import plugin
 from ..studies.evaluations import Bench
 from ..studies.workers import Here
 from . import points, rungs
-from .ladders import label
+from .ladders import COMPARED, label
 from .prediction import predict
 
 STORE = "rungs.jsonl"  #: in the folder of a study
-_GROWTH = 8.0  #: of the cost from rung to rung, where no two of a ladder have been run
+#: growth of the cost from rung to rung, where no two of a ladder have been run: of one that refines, and of others
+_GROWTH, _ALIKE = 8.0, 2.0
 
 
 class Study:
@@ -103,7 +104,8 @@ class Study:
 		]
 		if not took:
 			return 0.0
-		return took[-1] * (max(1.0, took[-1] / took[-2]) if len(took) > 1 else _GROWTH)
+		assumed = _ALIKE if ladder.kind in (*COMPARED, "threads") else _GROWTH
+		return took[-1] * (max(1.0, took[-1] / took[-2]) if len(took) > 1 else assumed)
 
 	def _told(self, ladder, place):
 		outcome = self.outcomes[ladder.name, place][0]

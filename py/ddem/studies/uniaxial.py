@@ -12,6 +12,7 @@ from .. import loading
 from ..block import Block
 from ..effect_table import effects
 from ..energy import EnergyBalance
+from ..meter import recording
 from ..series import Series
 from .runs import RECORDER, Run
 from .snapshots import SphereSnapshot, TriangleSnapshot
@@ -172,6 +173,7 @@ class CompressionTest:
 		self._look(files=True)
 		return self._result(wall, busy)
 
+	@recording()
 	def record(self):
 		"""Add a row to the record; called by the scene."""
 		energies = self.book.record() if self.book else {}
@@ -225,7 +227,8 @@ class CompressionTest:
 			steps=O.iter - self._first, wall=wall, busy=busy,
 			threads=O.numThreads, series=series, snapshots=self.snapshots,
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
-			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped, extra=specimen.figures(),
+			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
+			extra=specimen.figures(),
 			test=self.kind, broken=specimen.broken, effects=effects().rows()
 		)
 
