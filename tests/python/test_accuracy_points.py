@@ -201,7 +201,7 @@ def test_an_energy_that_depends_on_the_mesh_is_said_to():
 	entries = [{"value": 1e5 * size, "reference": 400.0, "error": abs(1e5 * size - 400) / 400} for size in SIZES]
 	outcomes = [[cost(1.0, size, **{"energy per volume": entry})] for size, entry in zip(SIZES, entries)]
 	found = points.of_ladder(given, outcomes, "scene")
-	said = "From 8 mm to 1 mm energy per volume goes from 800 J/m² to 100 J/m², as size^1; the point: 400 J/m²."
+	said = "From 8 mm to 1 mm energy per volume goes from 800 J/m² to 100 J/m², as size^1.00; the point: 400 J/m²."
 	assert sentences.mesh_dependence(found) == said and said in sentences.all_of(found)
 	line, right = figures.crack_energy(found).axes[0].lines
 	assert list(line.get_ydata()) == pytest.approx([100, 200, 400, 800]) and right.get_ydata()[0] == 400

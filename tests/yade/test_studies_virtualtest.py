@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """Virtual tests of small specimens, in this YADE and in others, and a calibration that finds known parameters again."""
+import dataclasses
 import os
 import platform
 import stat

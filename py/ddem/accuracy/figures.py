@@ -5,6 +5,7 @@ import math
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, LogFormatterMathtext, LogLocator, NullFormatter, NullLocator
 
 from .. import plots
@@ -21,18 +22,25 @@ def _mantissa(value):
 	return round(value / 10**math.floor(math.log10(value) + 1e-9))
 
 
+def _power(value, _):
+	"""As 2·10⁻⁸."""
+	power = math.floor(math.log10(value) + 1e-9)
+	return f"${value / 10**power:.2g}\\cdot10^{{{power}}}$"
+
+
 def _ticks(axis, low, high, words):
 	"""Ticks of a logarithmic axis: decades where there are several, else 1, 2 and 5 as well."""
 	decades = high > 200 * low
 	axis.set_major_locator(LogLocator(subs=(1, ) if decades else (1, 2, 5), numticks=12))
-	axis.set_major_formatter(FuncFormatter(words) if words else LogFormatterMathtext() if decades else "{x:.2g}")
+	written = words or (None if decades else _power)
+	axis.set_major_formatter(FuncFormatter(written) if written else LogFormatterMathtext())
 	axis.set_minor_formatter(NullFormatter())
 
 
 def _axes(ax):
 	ax.set_xscale("log")
 	ax.set_yscale("log")
-	ax.margins(x=0.12, y=0.2)
+	ax.margins(x=0.16, y=0.2)
 	per_cent = ax.get_ylim()[0] > 2e-5  # else powers of ten read better
 	_ticks(ax.yaxis, *ax.get_ylim(), (lambda value, _: f"{100 * value:g} %") if per_cent else None)
 	_ticks(ax.xaxis, *ax.get_xlim(), lambda value, _: f"{value:g}")
@@ -61,9 +69,9 @@ def work_precision(points, width=plots.COLUMN):
 			for group in part:
 				_line(ax, group, number)
 				number += 1
-			if part is parts[0]:
-				_label(ax, part[0])
 			_axes(ax)
+			if part is parts[0]:
+				_label(ax, *part)
 			if ax is not grid[-1, 0]:
 				ax.set_xlabel("")
 		handles = [handle for ax in grid[:, 0] for handle in ax.get_legend_handles_labels()[0]]
@@ -82,9 +90,9 @@ def _hidden(point):
 	return point.error < point.reference_error
 
 
-def _label(ax, group):
-	"""The rungs beside their points: one above, one below along a line, so that neighbours keep apart; where they
-	stand for one another, and have long names, numbers with a key over the axes."""
+def _label(ax, group, *others):
+	"""The rungs beside the points of a line, on the side that is away from the other lines, or on the other side of
+	a close neighbour; where they stand for one another, and have long names, numbers with a key over the axes."""
 	if group[0].kind in sentences.COMPARED:
 		for number, p in enumerate(group, 1):
 			ax.annotate(
@@ -94,20 +102,32 @@ def _label(ax, group):
 		key = "\n".join(f"{number}: {p.rung}" for number, p in enumerate(group, 1))
 		ax.set_title(key, fontsize=6, loc="left", color="#555555")
 		return
+	level = lambda line: np.mean([math.log(p.known) for p in line])
+	free = 8 if all(level(group) > level(other) - 0.05 for other in others) else -8  # points of paper, above or below
+	at = ax.transData.transform([(p.cpu_s, p.known) for p in group]) * 72 / ax.figure.dpi
+	side = free
 	for place, p in enumerate(group):
+		close = place and np.hypot(*(at[place] - at[place - 1])) < 38
+		side = -side if close else free
+		along = at[min(place + 1, len(at) - 1)] - at[max(place - 1, 0)]
+		along = along / (np.hypot(*along) or 1.0)
+		x, y = (-side * along[1], side * along[0]) if along.any() else (0, side)
 		ax.annotate(
-			p.rung, (p.cpu_s, p.known), textcoords="offset points",
-			xytext=(0, 7 if place % 2 else -11), ha="center", fontsize=6, color="#555555"
+			p.rung, (p.cpu_s, p.known), textcoords="offset points", xytext=(x, y), fontsize=6,
+			color="#555555", ha="left" if x > 5 else "right" if x < -5 else "center",
+			va="bottom" if y > 2 else "top" if y < -2 else "center",
+			path_effects=[withStroke(linewidth=1.5, foreground="white")]
 		)
 
 
 def _line(ax, group, number):
 	x, y = np.array([p.cpu_s for p in group]), np.array([p.known for p in group])
 	colour = plots.COLOURS[number % len(plots.COLOURS)]
-	_, slope = convergence.power_law(x, y)
+	told = [p for p in group if not _hidden(p)]
+	_, slope = convergence.power_law([p.cpu_s for p in told], [p.error for p in told])
 	apart = group[0].kind in sentences.COMPARED  # settings that stand for one another lie on no line
-	sloped = len(group) > 2 and math.isfinite(slope) and not apart
-	name = group[0].quantity + (f", slope {slope:.2g}" if sloped else "")
+	sloped = len(told) > 2 and math.isfinite(slope) and not apart
+	name = group[0].quantity + (f", slope {round(slope, 2) + 0:.2f}" if sloped else "")
 	mark = _MARKS[number % len(_MARKS)]
 	line = "none" if apart else "-"
 	ax.plot(x, y, linestyle=line, marker=mark, markersize=3.5, color=colour, label=name)
@@ -184,10 +204,10 @@ def threads(points, width=plots.COLUMN):
 					counts, [cost[key] for _, cost in costs], line, markersize=3.5, color=colour,
 					label=f"{name}, {first['particles']:.0f} particles"
 				)
-			ax.plot(
-				counts, first["wall_s"] * counts[0] / counts, ":", color="#888888", linewidth=0.8,
-				label=None if number else "ideal"
+			ideal, = ax.plot(
+				counts, first["wall_s"] * counts[0] / counts, ":", color="#888888", linewidth=0.8
 			)
+		ideal.set_label("shared without loss")
 		counts = sorted({n for costs in ladders for n, _ in costs})
 		ax.set_xticks(counts, [f"{n}" for n in counts])
 		ax.xaxis.set_minor_locator(NullLocator())
@@ -215,18 +235,18 @@ def crack_energy(points, width=plots.COLUMN):
 		ax = figure.add_subplot()
 		for number, group in enumerate(groups):
 			_, exponent = convergence.power_law([p.step for p in group], [p.value for p in group])
-			ax.loglog(
+			ax.semilogx(
 				[1e3 * p.step for p in group], [p.value for p in group], marker=_MARKS[number],
 				markersize=3.5, color=plots.COLOURS[number],
-				label=f"{group[0].quantity}, size$^{{{exponent:.1g}}}$"
+				label=f"{group[0].quantity}, as size$^{{{exponent:.2f}}}$"
 			)
 		right = groups[0][0].reference
 		ax.axhline(right, color="#888888", linewidth=0.8, linestyle="--", label=groups[0][0].source)
 		sizes = sorted({1e3 * p.step for group in groups for p in group})
 		ax.set_xticks(sizes, [f"{size:g}" for size in sizes])
 		ax.xaxis.set_minor_locator(NullLocator())
-		ax.margins(x=0.08, y=0.15)
-		_ticks(ax.yaxis, *ax.get_ylim(), lambda value, _: f"{value:g}")
+		ax.margins(x=0.08, y=0.1)
+		ax.set_ylim(bottom=0)
 		ax.set_xlabel("size [mm]")
 		ax.set_ylabel("energy of the crack [J/m²]")
 		figure.legend(loc="outside upper center", ncols=1)

@@ -145,7 +145,7 @@ _STRENGTH = (
 	Quantity("energy book", "energy book", "-", "energy_error", "first law")
 )
 _BLOCK = {"model": "deformable", "specimen": "block", "size": 0.008}
-_SPEEDS = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
+_SPEEDS = (2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
 _SLOW = {**_BLOCK, "rotation": "corotational"}  # below 0.1 m/s cosserat cores lose strength, more the longer it takes
 _BAND = "material point of a band 10 mm wide"
 _CORES = len(os.sched_getaffinity(0))
@@ -241,7 +241,7 @@ LADDERS = (
 	Ladder("ucs_threads", "threads", UCS, each("threads", *_THREADS), _STRENGTH[:1], {**_BLOCK, "size": 0.005}),
 	Ladder(
 		"ucs_threads_fine", "threads", UCS, each("threads", *_THREADS), _STRENGTH[:1],
-		{**_BLOCK, "size": 0.003125}
+		{**_BLOCK, "size": 0.004}
 	),
 	Ladder(
 		"ucs_flow", "flowInterval", UCS, each("flow_interval", 8, 4, 2, 1), _STRENGTH,

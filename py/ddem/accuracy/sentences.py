@@ -222,7 +222,7 @@ def mesh_dependence(points):
 	first, last = good[0], good[-1]
 	return (
 		f"From {first.rung} to {last.rung} {first.quantity} goes from {amount(first.value, first.unit)} to "
-		f"{amount(last.value, last.unit)}, as size^{exponent:.1g}; {first.source}: "
+		f"{amount(last.value, last.unit)}, as size^{exponent:.2f}; {first.source}: "
 		f"{amount(first.reference, first.unit)}."
 	)
 
