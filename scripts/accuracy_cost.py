@@ -20,6 +20,7 @@ import os
 import re
 import sys
 
+from yade.ddem import meter
 from yade.ddem.accuracy import ladders, page, sentences, study
 from yade.ddem.studies import commandline
 
@@ -47,7 +48,18 @@ def main():
 	for text in sentences.skipped(points):
 		print(text)
 	print(f"Report: {page.write(points, told, work, options.out, commandline.command())}")
+	print(steps_told(work))
 	return 0
+
+
+def steps_told(work):
+	"""What the steps of all runs have cost, those among them that were kept from before."""
+	runs = [one for outcomes in work.outcomes.values() for one in outcomes if not isinstance(one, str)]
+	if not runs:
+		return "no steps"
+	steps, particle_steps, cpu_s = (sum(one[name] for one in runs) for name in ("steps", "particle_steps", "cpu_s"))
+	counts = [round(one["particles"]) for one in runs]
+	return meter.line("particle", round(steps), round(particle_steps), cpu_s, min(counts), max(counts))
 
 
 def read_options():

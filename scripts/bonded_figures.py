@@ -80,7 +80,7 @@ def main():
 		groups, options.out, commandline.command(), commandline.plain(options), versions(),
 		settings(options, groups), pictures=options.pictures, pdf=options.pdf
 	)
-	print(f"\n{bonded_study.table(groups)}\n\nReport: {page}")
+	print(f"\n{bonded_study.table(groups)}\n\nReport: {page}\n{bonded_study.told(groups)}")
 
 
 def interrupt(*_):

@@ -382,6 +382,8 @@ def write_report(options, setup, fixed, outcome, bench):
 	)
 	page = report.write()
 	print(f"\n{report.table()}\n\nReport: {page}")
+	if report.told():
+		print(report.told())
 	return report
 
 

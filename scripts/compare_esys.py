@@ -33,9 +33,9 @@ import time
 
 from tqdm import tqdm
 
-from yade import ddem
-from yade.ddem import plots, provenance
-from yade.ddem.studies import commandline
+from yade import ddem, timing
+from yade.ddem import meter, plots, provenance
+from yade.ddem.studies import commandline, runs
 from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed
 from yade.ddem.studies.esys import comparison
 
@@ -123,6 +123,7 @@ def run_here(setup, options):
 	O.engines = ddem.bonded.engines(platens, viscosity=setup.viscosity, convention=options.convention)
 	O.dt = setup.dt
 	ddem.bonded.check()
+	O.timingEnabled = True
 	record = ddem.esys.Record("YADE with this plugin", setup, threads=O.numThreads)
 
 	def note(step, strain):
@@ -144,12 +145,18 @@ def run_here(setup, options):
 			O.step()
 			if step == 1:
 				# the first makes the lists of neighbours, as in ESyS-Particle
-				clock = time.perf_counter()
+				timing.reset()
+				record.bytes_per_particle = meter.bytes_per_particle()
+				clock, busy = time.perf_counter(), time.process_time()
 			if recorded:
 				note(step, strain)
 				bar.update(setup.every)
 				record.pieces.append(time.perf_counter() - clock)
 				clock += record.pieces[-1]
+	record.busy = time.process_time() - busy
+	taken = [(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines]
+	record.engines = runs.engine_costs(taken, (setup.steps - 1) * len(setup.packing))
+	record.effects = ddem.effects().rows()
 	return record
 
 
@@ -176,9 +183,13 @@ def report(theirs, ours, options):
 		"yade": comparison.figures(ours),
 		"differences": comparison.differences(theirs, ours),
 		"time_ratio_yade_to_esys": ours.nanoseconds / theirs.nanoseconds,
+		"engines": runs.plain_costs(ours.engines),
+		"effects": ours.effects,
 	}
 	provenance.write_json(os.path.join(options.out, "summary.json"), summary, indent="\t")
 	print(f"\n{comparison.table(theirs, ours)}\n\nWritten to {options.out}")
+	steps, count = setup.steps - 1, len(setup.packing)
+	print(meter.line("sphere", steps, steps * count, ours.busy, count, count))
 
 
 # ---- options ----

@@ -30,6 +30,7 @@ from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import confined, confined_figures
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	tests = {"rough": [], "smooth": []}

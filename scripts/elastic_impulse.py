@@ -37,6 +37,7 @@ from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import impulse, impulse_figures
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	recorders = [lambda block: vtk.Recorder(block, os.path.join(options.out, "block"))] if options.vtk else []

@@ -38,6 +38,7 @@ from yade.ddem.studies.structures import confined, confined_figures
 SIZES = {"crossed": 4.0, "alternating": 2.0, "unstructured": 2.38}
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	blocks = {}

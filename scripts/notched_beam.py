@@ -35,6 +35,7 @@ from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import beam, beam_figures
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	beams = {}

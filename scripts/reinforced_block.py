@@ -47,6 +47,7 @@ from yade.ddem import plots, provenance, vtk
 from yade.ddem.studies import commandline
 from yade.ddem.studies.structures import reinforced, reinforced_figures, reinforced_statements
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	{"none": realisations, "mesh": refinement, "bar": shielding}[options.study](options)

@@ -48,6 +48,7 @@ VELOCITY = {"compression": 0.125, "tension": 0.125 / 4}
 STRAIN = {"compression": 5e-3, "tension": 1e-3}  # largest [-]
 
 
+@commandline.steps_told()
 def main():
 	options, parser = read_options()
 	try:

@@ -2,6 +2,8 @@
 """Crush the same block of concrete twice: once made of rigid bonded spheres, once of deformable triangles.
 
 Run:      scripts/ddem run scripts/ucs_compare.py                     (half a minute; --preset full: five minutes)
+          scripts/ddem run scripts/ucs_compare.py --cost              (with coarser samples and another seed: what
+                                                                      this accuracy cost; a minute and a half more)
           scripts/ddem run scripts/ucs_compare.py --help              (all options)
 Writes:   a table here, and out/ucs_compare/report.html with pictures, summary.json, a CSV of each test,
           and ParaView files.
@@ -22,16 +24,23 @@ Expect:   both models peak near 71 MPa at about 0.15 % strain, with a slope of 5
           The triangles have Zubelewicz's Tables 1 and 2 untouched; the bonds were matched to them (see BONDS).
 """
 import argparse
+import hashlib
 import math
 import os
 import time
 
-from yade import ddem
+from yade import (
+	BondedMat, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
+)
 from yade.ddem import provenance, vtk
+from yade.ddem.accuracy import estimate, study
+from yade.ddem.accuracy.ladders import Ladder, Quantity
+from yade.ddem.accuracy.section import Section
 from yade.ddem.reports import parameter_tables
 from yade.ddem.reports.parameter_tables import number
 from yade.ddem.reports.uniaxial import Report
 from yade.ddem.studies import commandline, uniaxial
+from yade.ddem.studies.evaluations import EvaluationError
 from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed, share
 
 WIDTH, HEIGHT = 0.10, 0.20  # [m]
@@ -50,16 +59,25 @@ PRESETS = {
 }
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
-	runs = [crush(model, options) for model in options.models]
+	runs, shares = [], {}
+	for model in options.models:
+		runs.append(crush(model, options))
+		if options.cost:
+			shares[runs[-1].title] = estimate.estimate(steps=1).effects
+	section = cost(runs, shares, options) if options.cost else None
 	report = Report(
 		runs, options.out, title(runs), settings=settings(options), command=commandline.command(O.numThreads),
 		options=commandline.plain(options),
-		versions=versions(), notes=notes(options), pictures=options.pictures, pdf=options.pdf
+		versions=versions(), notes=notes(options), pictures=options.pictures, pdf=options.pdf, cost=section
 	)
 	page = report.write()
-	print(f"\n{report.table()}\n\nReport: {page}")
+	print(f"\n{report.table()}\n")
+	if section:
+		print(f"{section.text()}\n")
+	print(f"Report: {page}")
 
 
 # ---- the two tests ----
@@ -167,7 +185,10 @@ def crush(model, options):
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	duration = options.strain * HEIGHT / closing + 0.5 * options.ramp
 	recorders = [vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", model))] if options.vtk else []
-	test = uniaxial.CompressionTest(platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical)
+	test = uniaxial.CompressionTest(
+		platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical,
+		snapshots=options.pictures or options.vtk
+	)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
 	run.setup, run.parameters = (
@@ -175,6 +196,84 @@ def crush(model, options):
 		[*parameters, ("time step", f"{1e6 * run.dt:.3g} µs", f"{options.safety:g} of the critical one")],
 	)
 	return run
+
+
+# ---- what this accuracy cost ----
+
+REFINEMENT = (4, 2, 1)  #: meshes over that of the main job; each with its double, for the error of discretisation
+COARSER = (2, math.sqrt(2), 1)  #: spheres over those of the main job: four times as large ones would not fit
+
+
+def one_test(model, seed, script, **settings):
+	"""One test of the main job with settings of its own: the scene of the ladders, each in a YADE of its own.
+
+	:param settings: the options that the sample and its test depend on
+	:param script: digest of this file, so that what an older version gave is not taken for its result
+	"""
+	if model == "rigid":
+		# two diameters of the largest sphere, as for every sample
+		settings["depth"] = max(settings["depth"], 4 * settings["radii"][1])
+	quiet = {"out": None, "vtk": False, "pictures": False, "progress": False}
+	run = crush(model, argparse.Namespace(**settings, **quiet, seed=seed))
+	if not run.strength.peaked:
+		raise EvaluationError("the stress had not fallen from its largest value: allow a larger --strain")
+	return {"strength": run.strength.ucs, "Young's modulus": run.strength.young}
+
+
+def ladder(model, options):
+	"""The main job's sample, last, and coarser ones."""
+	if model == "deformable":
+		sizes = [factor * options.size for factor in REFINEMENT]
+		if sizes[0] > WIDTH / 4:
+			sizes = [factor * options.size for factor in COARSER]
+		kind, refined = "mesh size", "size"
+		rungs = [{"size": size} for size in sizes if size <= WIDTH / 4]
+	else:
+		kind, refined = "number of particles", "radii"
+		ranges = [[factor * radius for radius in options.radii] for factor in COARSER]
+		rungs = [{"radii": radii} for radii in ranges if 8 * radii[1] <= WIDTH or radii == ranges[-1]]
+	with open(one_test.__code__.co_filename, "rb") as file:
+		digest = hashlib.sha256(file.read()).hexdigest()[:12]
+	shared = (
+		"velocity", "ramp", "drive", "ends", "strain", "stop", "safety", "size", "mesh", "rotation", "rebar",
+		"radii", "bonds", "depth", "fails"
+	)
+	plain = commandline.plain(options)
+	return Ladder(
+		model, kind, f"{os.path.abspath(one_test.__code__.co_filename)}:{one_test.__name__}", rungs,
+		(Quantity("strength", "UCS", "Pa"), Quantity("Young's modulus", "E", "Pa")),
+		{"model": model, "script": digest, **{name: plain[name] for name in shared}}, refined,
+		tuple(range(options.seed, options.seed + options.cost))
+	)
+
+
+def cost(runs, shares, options):
+	"""The same tests on coarser samples and with other seeds, beside the runs of the main job."""
+	ladders = [ladder(run.model, options) for run in runs]
+	work = study.Study(
+		ladders, os.path.join(options.out, "cost"), threads=O.numThreads,
+		report=lambda text: print(text, flush=True)
+	)
+	work.run()
+	said = [
+		(
+			"The same test on coarser samples and with other seeds, each in a YADE of its own: block, "
+			"platens and law are those above, sizes and seeds change. Errors are of the mean over "
+			f"{options.cost} seeds from {options.seed} on, scatter is their standard deviation; seconds are "
+			"processor time of the steps of one sample."
+		)
+	]
+	if "rigid" in options.models:
+		said.append(
+			"Bonds of larger spheres keep Young's modulus and cohesion of the main job's and are not "
+			"matched again; where two diameters of the largest sphere need it, the prism is deeper. So "
+			"their error is what the size of spheres does to a model with these parameters; bonds that are "
+			"matched anew for each size would have less of it."
+		)
+	return Section(
+		{run.title: work.points(one) for run, one in zip(runs, ladders)}, {run.title: run.model for run in runs},
+		said, shares
+	)
 
 
 # ---- options ----
@@ -220,6 +319,18 @@ def read_options():
 		default=os.path.join("out", "ucs_compare"),
 		metavar="DIR",
 		help="folder for all files, made when missing; older files are replaced",
+	)
+	run.add_argument(
+		"--cost",
+		type=count,
+		nargs="?",
+		const=2,
+		default=0,
+		metavar="SEEDS",
+		help=(
+			"report what this accuracy cost: run two coarser samples beside each, with so many seeds (2 where "
+			"no number is given). With the preset quick it adds a minute and a half, with full ten times that"
+		),
 	)
 	test = parser.add_argument_group("test")
 	test.add_argument(

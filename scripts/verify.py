@@ -8,7 +8,8 @@ Run:      scripts/ddem run scripts/verify.py                                (the
           scripts/ddem run scripts/verify.py --list                         (what there is)
           scripts/ddem run scripts/verify.py --case kirsch cantilever       (some)
 Writes:   a table here; with --json FILE a list of {case, quantity, value, reference, error, tolerance, passed, source,
-          wall_s}; with --report DIR DIR/verification.html, which holds everything, and its pictures as files.
+          wall_s, ns_per_particle_step, bytes_per_particle}; with --report DIR DIR/verification.html,
+          which holds everything, and its pictures as files.
 Expect:   every check passes, and the exit code is 0; it is 1 when one fails. A case is a small file in
           py/ddem/verification/cases, which reads as an example and says what it shows,
           where its reference comes from and what to expect.
@@ -21,9 +22,11 @@ import tempfile
 
 import yade.config
 from yade.ddem import provenance, verification
+from yade.ddem.studies import commandline
 from yade.ddem.verification import freefem
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	if options.list:
@@ -118,7 +121,7 @@ def print_result(result):
 		)
 	if result.error:
 		print(result.error)
-	print(f"  {result.wall:.1f} s", flush=True)
+	print("\n".join(f"  {text}" for text in (f"{result.wall:.1f} s", *result.told)), flush=True)
 
 
 def command():

@@ -8,11 +8,12 @@ import numpy as np
 
 from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
-from . import crackband, provenance
+from . import crackband, meter, provenance
 from .arrays import BodyIds, fixed
 from .field import Field
 
 
+@meter.makes_particles
 def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
 	"""Append the mesh to the scene as nodes and deformable triangles.
 

@@ -40,7 +40,7 @@ from yade import (
 	ViscousBodyDamping, utils
 )
 
-from . import broken_bonds
+from . import broken_bonds, meter
 from .arrays import BodyIds, fixed
 
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
@@ -49,6 +49,7 @@ DEFAULT_GAP = 0.0025
 _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bonded to it (tutorial of ESyS-Particle)
 
 
+@meter.makes_particles
 def append(packing, material, gap=None, color=None, mass_law="solid"):
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 

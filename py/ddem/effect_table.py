@@ -40,6 +40,7 @@ import math
 import textwrap
 from dataclasses import asdict
 
+from . import meter
 from .effects_of_spheres import groups_of_spheres
 from .effects_of_triangles import groups_of_triangles
 
@@ -49,8 +50,10 @@ _WIDTH = 120  # of the table
 class EffectTable:
 	"""What :func:`effects` returns; ``print`` shows it, :meth:`rows` gives it as plain data."""
 
-	def __init__(self, groups):
+	def __init__(self, groups, bytes_per_particle=None):
 		self.groups = groups  #: list of :class:`effect_entries.Group`
+		#: what the whole scene takes [bytes], see :func:`meter.bytes_per_particle`; None: not known
+		self.bytes_per_particle = bytes_per_particle
 
 	def __len__(self):
 		return len(self.groups)
@@ -73,14 +76,15 @@ class EffectTable:
 
 	def rows(self):
 		"""A dict an effect: group, particle, count, group_bytes, cost, ns_per_particle_step, effect, state
-		("on", "off", "idle"), runs, changed (None: not known), why, bytes, measured, bound. Plain
-		values for JSON.
+		("on", "off", "idle"), runs, changed (None: not known), why, bytes, measured, bound; and
+		bytes_per_particle of the whole scene. Plain values for JSON.
 		"""
 		rows = []
 		for group in self.groups:
 			shared = {
 				"group": group.name, "particle": group.particle, "count": group.count,
-				"group_bytes": group.bytes, "cost": group.cost, "ns_per_particle_step": group.ns
+				"group_bytes": group.bytes, "cost": group.cost, "ns_per_particle_step": group.ns,
+				"bytes_per_particle": self.bytes_per_particle
 			}
 			for effect in group.effects:
 				plain = asdict(effect)
@@ -118,6 +122,12 @@ class EffectTable:
 						subsequent_indent=margin + "  "
 					)
 			blocks.append("\n".join(lines))
+		if self.bytes_per_particle is not None:
+			kind = "triangle" if any(group.particle == "triangle" for group in self.groups) else "sphere"
+			blocks.append(
+				f"memory: {self.bytes_per_particle:.0f} bytes a {kind}, with its body, its share of "
+				"nodes or bonds, and the engines' tables"
+			)
 		return "\n\n".join(blocks)
 
 	__repr__ = __str__
@@ -130,4 +140,4 @@ def effects():
 	many bytes it takes; after a run also what it cost (where O.timingEnabled was on) and which effects changed
 	nothing. Reads the whole sample once: call it at the end, not in every step.
 	"""
-	return EffectTable([*groups_of_triangles(), *groups_of_spheres()])
+	return EffectTable([*groups_of_triangles(), *groups_of_spheres()], meter.bytes_per_particle())

@@ -144,7 +144,8 @@ def run(until=None, steps=None, progress=True):
 	way (:yref:`DeformableTimeStepper`).
 
 	A run that something else ends, such as O.pause() in a PyRunner, ends here as well. With the progress bar a line
-	at the end says what the steps cost: nanoseconds of processor time a particle and step, of all threads together.
+	at the end says what the steps cost: nanoseconds of processor time a particle and step, of all threads together;
+	where a :class:`meter.StepMeter` counts them, that says it.
 
 	:param until: time to run to [s]; or
 	:param steps: number of steps.
@@ -190,7 +191,7 @@ def run(until=None, steps=None, progress=True):
 			# O.run looks for its end only every 40 ms, so pieces are long: half a second, which is also how
 			# often the bar moves and Ctrl-C is heard
 			piece = max(1, round(piece * min(10, 0.5 / (time.perf_counter() - clock))))
-	if progress and O.iter > first:
+	if progress and O.iter > first and not meter.is_metered():
 		print(meter.told(O.iter - first, time.process_time() - busy), file=sys.stderr)
 
 

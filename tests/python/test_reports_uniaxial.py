@@ -81,7 +81,7 @@ def rigid_run():
 		"rigid", "rigid bonded spheres", "sphere", len(grid), 6 * len(grid), 4e-7, 5e-7, 1000, 1.0, 0.9, 1,
 		curve({"externalWork": -1000, "bondElastic": 400, "friction": 600}),
 		snapshots, [("interactions", 0.7, 1000), ("newton", 0.3, 1000)], 3e-5,
-		"stress stayed below 20 % of the peak", extra={"bonds": 361}
+		"stress stayed below 20 % of the peak", extra={"bonds": 361}, bytes_per_particle=2500.0
 	)
 
 
@@ -118,7 +118,9 @@ def test_summary_has_the_promised_figures(runs):
 		assert figures["damage_at_end"] == pytest.approx(0.4)
 		assert figures["energy_error"] == 3e-5
 		assert figures["peak_passed"]
-	assert runs[0].summary()["ns_per_particle_step"] == pytest.approx(1e9 * 1.0 / 1000 / 200)  # both engines
+	# processor time of all, 0.9 s
+	assert runs[0].summary()["ns_per_particle_step"] == pytest.approx(1e9 * 0.9 / 1000 / 200)
+	assert runs[0].summary()["bytes_per_particle"] == 2500 and runs[1].summary()["bytes_per_particle"] is None
 	assert runs[0].summary()["bonds"] == 361
 
 
@@ -128,8 +130,53 @@ def test_cost_ratios(runs):
 	assert ratios["wall_s"] == pytest.approx(4)
 	assert ratios["steps"] == pytest.approx(2)
 	# without the recorder's half second
-	assert ratios["ns_per_particle_step"] == pytest.approx(3.5 / 2 * rigid.particles / deformable.particles)
+	seconds = (3.9 - 0.5) / 2000, 0.9 / 1000
+	assert ratios["ns_per_particle_step"] == pytest.approx(
+		seconds[0] / seconds[1] * rigid.particles / deformable.particles
+	)
 	assert cost_ratios(runs[:1]) == {}
+
+
+def test_every_report_says_where_the_time_goes(runs, tmp_path):
+	"""Of 1000 steps of 200 spheres bonds take 0.7 s and their motion 0.3 s."""
+	rows = runs[0].summary()["engines"]
+	assert [row["engine"] for row in rows] == ["interactions", "newton"]
+	assert [row["ns_per_particle_step"] for row in rows] == pytest.approx([3500, 1500])
+	assert [row["share"] for row in rows] == pytest.approx([0.7, 0.3])
+	assert [name for name, _, _ in runs[0].engine_costs(least=0.5)] == ["interactions", "others"]
+	made = report(runs, tmp_path, pictures=False)
+	page = open(made.write(), encoding="utf-8").read()
+	assert "Where the time goes" in page and "<th>interactions</th><td>3500</td><td>70.0 %</td>" in page
+	assert "2\u202f500 bytes a sphere" in page and "bytes a triangle" not in page
+	assert {row[0]: row[2] for row in made.table_rows() if row}["memory per particle"] == ["2\u202f500", "–"]
+
+
+class Cost:
+	"""Stands for an accuracy.section.Section."""
+	points, columns, notes = {"rigid bonded spheres": []}, ["sample", "quantity", "error"], ["What is kept."]
+
+	def sentences(self, title):
+		return [f"{title} cost 3 s."]
+
+	def rows(self, title):
+		return [["4 mm", "strength", "3 %", "1 %"], ["8 mm", "strength", "it broke <down>"]]
+
+	def plain(self):
+		return {"rigid": {"points": []}}
+
+	def figures(self):
+		return {"cost_rigid": None}
+
+
+def test_what_the_accuracy_cost_is_a_section(runs, tmp_path):
+	made = report(runs, tmp_path, pictures=False, cost=Cost())
+	page = open(made.write(), encoding="utf-8").read()
+	for text in ("What this accuracy cost", "What is kept.", "rigid bonded spheres cost 3 s.", "broke &lt;down&gt;"):
+		assert text in page
+	with open(tmp_path / "summary.json") as file:
+		assert json.load(file)["cost"] == {"rigid": {"points": []}}
+	assert "What this accuracy cost" not in open(report(runs, tmp_path, pictures=False).write()).read()
+	assert "cost" not in report(runs, tmp_path).summary()
 
 
 def test_parts_of_the_energy_book(runs):

@@ -41,7 +41,8 @@ def folder(path, strength, top=1.0):
 	figures = {
 		"particles": 50, "bonds": BONDS, "ucs_MPa": strength, "young_GPa": strength / 1.5,
 		"strain_at_peak": 0.01, "damage_at_peak": 0.1, "damage_at_end": 0.4,
-		"dt_s": 5e-7, "steps": 500, "cpu_s": 3.0, "wave_speed_m_s": 800.0
+		"dt_s": 5e-7, "steps": 500, "cpu_s": 3.0, "wave_speed_m_s": 800.0, "ns_per_particle_step": 80.0,
+		"bytes_per_particle": 7000.0
 	}
 	with open(path / "summary.json", "w") as file:
 		json.dump({"options": {"velocity": 0.125, "seed": 1}, "models": {"rigid": figures}}, file)
@@ -191,6 +192,20 @@ def test_effects_of_the_first_run_are_on_the_page(group, tmp_path):
 	assert "part of every bond. <i>a share of 1e-6: changed nothing</i>" in page
 	with open(tmp_path / "out" / "study.json", encoding="utf-8") as file:
 		assert json.load(file)["effects"] == [row]
+
+
+def test_cost_is_in_every_table_and_the_first_run_s_engines_on_the_page(group, tmp_path):
+	one = group([200.0, 210.0])
+	one.records[0].summary["engines"] = [{"engine": "interactions", "ns_per_particle_step": 60.0, "share": 0.75}]
+	path = report.write([one], str(tmp_path / "out"), "run it", {}, {}, [], pictures=False)
+	page = open(path, encoding="utf-8").read()
+	assert "<th>interactions</th><td>60</td><td>75.0 %</td>" in page and "a sphere [B]" in page
+	with open(tmp_path / "out" / "study.json", encoding="utf-8") as file:
+		runs = json.load(file)["groups"][0]["runs"]
+	assert [(run["ns_per_particle_step"], run["bytes_per_particle"]) for run in runs] == [(80, 7000)] * 2
+	assert "7000" in report.table([one])
+	one.records[1].summary.pop("bytes_per_particle")  # of a version that did not say so
+	assert "–" in report.table([one])
 
 
 def test_page_of_a_few_runs_without_pictures(group, tmp_path):

@@ -235,6 +235,10 @@ def test_figures(pair):
 	)
 	assert figures["ns_per_particle_step"] == pytest.approx(2e9 / 19 / 3)
 	assert figures["ns_per_bond_step"] == pytest.approx(2e9 / 19 / 2)
+	assert figures["bytes_per_particle"] is None
+	pair[1].engines = [("interactions", 80.0, 0.8), ("newton", 20.0, 0.2)]
+	rows = [line.split() for line in comparison.table(*pair).splitlines()]
+	assert ["interactions", "80", "ns", "80.0", "%"] in rows and ["newton", "20", "ns", "20.0", "%"] in rows
 
 
 def test_differences(pair):

@@ -147,3 +147,4 @@ def test_a_small_study(tmp_path):
 	with start(folder) as process:
 		text = process.communicate()[0]
 	assert process.returncode == 0 and text.count("finished before") == 4
+	assert re.search(r"\d+ steps of \d+ spheres: .+ ns a sphere-step, \S+ s of processor time\n*$", text)

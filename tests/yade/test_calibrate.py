@@ -2,6 +2,7 @@
 """The script that calibrates: what it refuses, what it finds, how it goes on, and what it says when it cannot."""
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -11,6 +12,7 @@ import origins
 import pytest
 import script_modules
 
+from yade import ddem
 from yade.ddem.studies import virtualtest
 from yade.ddem.studies.workers import Here
 
@@ -34,7 +36,7 @@ def here(monkeypatch):
 
 	def submit(self, values, case):
 		asked.append(values)
-		return Here().submit(virtualtest.perform, self.setup, {**self.fixed, **values}, case, self.cache)
+		return Here().submit(virtualtest.perform_and_tell, self.setup, {**self.fixed, **values}, case, self.cache)
 
 	monkeypatch.setattr(virtualtest.SeparateYade, "submit", submit)
 	return asked
@@ -79,10 +81,20 @@ def test_targets_are_met_and_a_second_start_uses_the_file(job, here, monkeypatch
 		"calibration.html", "calibration.json", "convergence.png", "evaluations.jsonl", "sensitivities.png"
 	} <= set(os.listdir(tmp_path))
 	assert len({origin["inputs_sha256"] for origin in origins.of_all(tmp_path).values()}) == 1
-	made = len(here)
+	# every report says what the steps cost, and where the time goes
+	line = re.fullmatch(r"(\d+) steps of (\d+) triangles: .+ ns a triangle-step, \S+ s of .*", text.splitlines()[-1])
+	measured, made = found["measured"], len(here)
+	each = {json.dumps(step["values"]): step["measured"]["steps"] for step in found["steps"]}
+	assert int(line[1]) == sum(each.values()) and len(each) == made
+	mesh = ddem.mesh.rectangle(0.1, 0.2, 0.025, pattern="unstructured", seed=1)
+	assert int(line[2]) == measured["particles"] == len(mesh.triangles)
+	assert measured["ns_per_particle_step"] > 0 and measured["bytes_per_particle"] > 0
+	page = (tmp_path / "calibration.html").read_text(encoding="utf-8")
+	assert "Where the time goes" in page and "<th>DeformableEngine</th>" in page
 	assert run(job, monkeypatch, tmp_path, *SMALL, *AIM) == 0
 	assert len(here) == made
-	assert f"after 0 evaluations and {made} from the file" in capsys.readouterr().out
+	text = capsys.readouterr().out
+	assert f"after 0 evaluations and {made} from the file" in text and "triangle-step" not in text
 
 
 def test_target_out_of_reach(job, here, monkeypatch, tmp_path, capsys):

@@ -119,7 +119,9 @@ def test_report(job, options, capsys):
 	ours = job.run_here(setup, chosen)
 	theirs = ddem.esys.Record("ESyS-Particle", setup, ours.series, pieces=[2 * piece for piece in ours.pieces])
 	job.report(theirs, ours, chosen)
-	assert "0.50 of the time of ESyS-Particle" in capsys.readouterr().out
+	said = capsys.readouterr().out
+	assert "0.50 of the time of ESyS-Particle" in said and "where the time of YADE with this plugin goes" in said
+	assert said.splitlines()[-1].startswith("399 steps of 241 spheres: ")
 	with open(os.path.join(chosen.out, "summary.json")) as file:
 		summary = json.load(file)
 	assert (summary["particles"], summary["bonds"], summary["time_ratio_yade_to_esys"]) == (
@@ -129,6 +131,10 @@ def test_report(job, options, capsys):
 	)
 	assert summary["differences"] == {"stress_MPa": 0.0, "equal_up_to_percent": 100.0}
 	assert summary["options"]["length_unit"] == "mm"
+	shares = {row["engine"]: row["share"] for row in summary["engines"]}
+	assert sum(shares.values()) == pytest.approx(1) and shares["interactions"] > 0
+	assert {row["group"] for row in summary["effects"]} == {"bonded spheres"}
+	assert summary["yade"]["bytes_per_particle"] > 0 and summary["esys"]["bytes_per_particle"] is None
 	written = Series.read(os.path.join(chosen.out, "yade.csv"))
 	np.testing.assert_array_equal(written["stress"], ours.series["stress"])
 	assert os.path.getsize(os.path.join(chosen.out, "comparison.png")) > 1e4

@@ -1,14 +1,18 @@
 # GPL v2 or later, see LICENSE.
 """What counts as cost: the steps that YADE makes, however they are asked for."""
 import builtins
+import gc
 import re
+import types
 
 import pytest
 
 from deformable_samples import elastic, skewed_mesh, start
-from yade import O, PyRunner, ddem, utils
+from yade import BondedMat, O, PyRunner, ddem, utils
 from yade.ddem import meter as meters
-from yade.ddem.meter import StepMeter, particles, refined, unknowns
+from yade.ddem.meter import (
+	StepMeter, beside_the_scene, bytes_per_particle, heap, is_metered, line, particles, refined, unknowns
+)
 
 
 def test_steps_count_however_they_are_run():
@@ -66,7 +70,7 @@ def test_engines_that_record_do_not_count(monkeypatch):
 	O.timingEnabled = True
 	with StepMeter(apart=["recorder"]) as without:
 		O.run(50, True)
-		monkeypatch.setattr(without, "_of_others", lambda: 3600.0 if O.iter > 60 else 0.0)
+		monkeypatch.setattr(without, "_of_others", lambda took: 3600.0 if O.iter > 60 else 0.0)
 		half = without.cpu_s
 		O.run(50, True)
 	O.timingEnabled = False
@@ -74,31 +78,29 @@ def test_engines_that_record_do_not_count(monkeypatch):
 
 
 def test_what_a_recorder_waits_for_the_processor_is_no_time_of_it(monkeypatch):
-	"""By clocks that go on for what is written here alone. In a step a recorder works for 3 s and waits for 2 s;
-	calling it takes half a second more, as YADE says, and all else 1 s of two threads."""
-	process, thread, clock = [0.0], [0.0], [0.0]
-	monkeypatch.setattr(meters, "_now", lambda: (process[0], thread[0], clock[0]))
-
-	@meters.recording()
-	def record():
-		process[0], thread[0], clock[0] = process[0] + 3, thread[0] + 3, clock[0] + 5
+	"""By clocks that go on for what is written here alone. In a step a recorder works for 3 s and waits for 2 s; all
+	else takes 2.5 s of two threads, 1.5 s by the clock."""
+	process, clock = [0.0], [0.0]
+	clocks = types.SimpleNamespace(process_time=lambda: process[0], perf_counter=lambda: clock[0])
+	monkeypatch.setattr(meters, "time", clocks)
+	calls = []
 
 	def step():
+		calls.append(None)
 		process[0], clock[0] = process[0] + 2.5, clock[0] + 1.5
-		record()
+		with meters.beside_the_steps():
+			process[0], clock[0] = process[0] + 3, clock[0] + 5
 
 	monkeypatch.setattr(builtins, "step_of_test", step, raising=False)
 	ddem.append(skewed_mesh(), elastic())
 	start()
-	O.engines = O.engines + [PyRunner(command="step_of_test()", iterPeriod=1)]
+	O.engines = O.engines + [PyRunner(command="step_of_test()", iterPeriod=1, label="recorder")]
 	with StepMeter(apart=["recorder"]) as meter:
-		monkeypatch.setattr(meter, "_of_others", lambda: 5.5 * thread[0] / 3)
 		O.run(50, True)
 		process[0] += 7  # between runs
 		O.run(50, True)
-	calls = thread[0] / 3
-	assert calls in (99, 100) and meter.steps == 100  # YADE leaves out the first step of all
-	assert meter.cpu_s == pytest.approx(2 * calls) and meter.wall_s == pytest.approx(calls)
+	assert meter.steps == 100 and len(calls) in (99, 100)  # YADE leaves out the first step of all
+	assert meter.cpu_s == pytest.approx(2.5 * len(calls)) and meter.wall_s == pytest.approx(1.5 * len(calls))
 
 
 def test_a_run_says_what_it_cost(capfd):
@@ -127,3 +129,133 @@ def test_the_bar_of_a_run_shows_it(monkeypatch, capsys):
 	start()
 	ddem.run(steps=200)
 	assert re.search(r"ns a triangle-step, \S+ core-seconds in all\]", capsys.readouterr().err)
+
+
+def test_a_meter_within_another_counts_its_own_part():
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	methods = O.run, O.step, O.wait
+	with StepMeter() as whole:
+		O.run(3, True)
+		with StepMeter() as part:
+			O.run(4, True)
+			O.step()
+		assert is_metered()
+		O.step()
+	assert (part.steps, whole.steps) == (5, 9) and part.cpu_s <= whole.cpu_s
+	assert (O.run, O.step, O.wait) == methods and not is_metered()
+
+
+def test_a_metered_run_leaves_the_saying_to_the_meter(capfd):
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	with StepMeter():
+		ddem.run(steps=5)
+	assert "processor time" not in capfd.readouterr().err
+
+
+def test_scenes_of_several_sizes_and_kinds_are_told_apart():
+	few = len(ddem.append(skewed_mesh(), elastic()).triangle_ids)
+	start()
+	with StepMeter() as meter:
+		O.run(10, True)
+		O.reset()
+		sample = ddem.append(ddem.mesh.rectangle(0.1, 0.1, size=0.01), elastic())
+		start()
+		O.step()
+		O.step()
+		O.reset()
+		O.bodies.append([utils.sphere((i, 0, 0), 0.1) for i in range(3)])
+		O.dt = 1e-9
+		O.run(7, True)
+	many = len(sample.triangle_ids)
+	triangles, spheres = meter.told()
+	assert triangles.startswith(f"12 steps of {few} to {many} triangles: ") and triangles.endswith("processor time")
+	assert spheres.startswith("7 steps of 3 spheres: ")
+	assert meter.particle_steps == 10 * few + 2 * many + 7 * 3 and meter.particles == many
+
+
+def test_a_line_is_plain_arithmetic():
+	said = line("sphere", 100, 2000, 5e-6, 10, 30)
+	assert said == "100 steps of 10 to 30 spheres: 2.5 ns a sphere-step, 5e-06 s of processor time"
+
+
+def test_engines_are_timed_where_yade_times_them():
+	ddem.append(skewed_mesh(), elastic())
+	start()
+	O.engines = O.engines + [PyRunner(command="pass", iterPeriod=1, label="recorder")]
+	with StepMeter(apart=["recorder"]) as meter:
+		O.run(5, True)
+		assert not meter.engines
+		O.timingEnabled = True
+		try:
+			O.run(20, True)
+			O.step()
+		finally:
+			O.timingEnabled = False
+	assert meter.engines.keys() == {"ForceResetter", "DeformableEngine"}
+	taken = next(engine.execTime for engine in O.engines if type(engine).__name__ == "DeformableEngine")
+	assert meter.engines["DeformableEngine"] == pytest.approx(1e-9 * taken)
+	figures = meter.figures()
+	assert figures["engine:DeformableEngine"] == pytest.approx(taken / meter.particle_steps)
+	assert figures["ns_per_particle_step"] == meter.ns_per_particle_step and figures["steps"] == 26
+
+
+# ---- memory ----
+
+
+def test_heap_counts_what_is_allocated():
+	before = heap()
+	kept = bytearray(50_000_000)
+	assert heap() - before == pytest.approx(len(kept), rel=0.01)
+	del kept
+	assert abs(heap() - before) < 1e6
+
+
+def sample(size):
+	gc.collect()  # what other tests have left would be freed meanwhile
+	return ddem.append(ddem.mesh.rectangle(0.1, 0.1, size=size), elastic())
+
+
+def test_bytes_of_triangles_do_not_depend_on_their_number():
+	"""And are no less than what a body with its state and shape must have, some hundred numbers."""
+	found = []
+	for size in (0.004, 0.002):
+		O.reset()
+		sample(size)
+		start()
+		O.step()
+		found.append(bytes_per_particle())
+	assert found[0] == pytest.approx(found[1], rel=0.1) and 800 < found[1] < 8000
+
+
+def test_bytes_stay_those_of_the_first_step():
+	sample(0.004)
+	start()
+	with beside_the_scene():
+		kept = bytearray(20_000_000)
+	O.step()
+	found = bytes_per_particle()
+	assert found < 8000  # the 20 MB would be more
+	kept += bytearray(20_000_000)
+	assert bytes_per_particle() == found == ddem.effects().bytes_per_particle
+	assert f"memory: {found:.0f} bytes a triangle" in str(ddem.effects())
+	assert {row["bytes_per_particle"] for row in ddem.effects().rows()} == {found}
+
+
+def test_bytes_of_bonded_spheres_have_their_bonds():
+	O.materials.append(BondedMat(label="rock"))
+	gc.collect()
+	spheres = ddem.packing.prism(0.02, 0.02, 0.02, 5e-4, 1e-3, seed=1, fails=200)
+	made = ddem.bonded.append(spheres, "rock")
+	O.engines = ddem.bonded.engines()
+	O.dt = ddem.bonded.time_step(0.5)
+	O.step()
+	bonds = made.initial_bonds / len(made) * ddem.effects()["bonded"].bytes
+	assert bonds < bytes_per_particle() < 20_000
+
+
+def test_a_scene_made_by_other_means_has_no_bytes(tmp_path):
+	assert bytes_per_particle() is None
+	O.bodies.append([utils.sphere((i, 0, 0), 0.1) for i in range(3)])
+	assert bytes_per_particle() is None

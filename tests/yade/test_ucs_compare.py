@@ -8,11 +8,13 @@ import struct
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
+from types import SimpleNamespace
 
 import origins
 import pytest
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
+from yade.ddem.accuracy import estimate, rungs
 from yade.ddem.series import Series
 
 SCRIPT = os.path.join(os.path.dirname(__file__), "..", "..", "scripts", "ucs_compare.py")
@@ -160,6 +162,65 @@ def test_one_model_and_its_options(job, monkeypatch, tmp_path):
 	assert figures["degrees_of_freedom"] == 2 * (800 + figures["nodes"])  # no rotation: two a core
 	assert figures["strain_at_end"] == pytest.approx(0.001, rel=0.05)
 	assert sorted(os.listdir(tmp_path)) == ["deformable.csv", "report.html", "summary.json"]
+
+
+def test_what_this_accuracy_cost(job, monkeypatch, tmp_path, capsys):
+	"""One scene serves both: the ladder's finest sample with the first seed is the main job's, bit by bit."""
+	asked = []
+
+	def here(self, values, case):
+		asked.append(values)
+		return rungs.perform(case["scene"], values)
+
+	monkeypatch.setattr(rungs.SeparateRung, "__call__", here)
+	monkeypatch.setattr(estimate, "estimate", lambda steps: SimpleNamespace(effects={"damage of concrete": 0.25}))
+	small = [*SMALL, "--size", "0.0125", "--cost", "--out", str(tmp_path)]
+	run(job, monkeypatch, *small)
+	said = capsys.readouterr().out
+	with open(tmp_path / "summary.json") as file:
+		summary = json.load(file)
+	with open(tmp_path / "cost" / "rungs.jsonl") as file:
+		stored = [json.loads(line) for line in file]
+	for model, size in (("rigid", "radii 5 to 10 mm"), ("deformable", "12.5 mm")):
+		finest = next(
+			one["measured"] for one in stored
+			if (one["parameters"]["model"], one["parameters"]["seed"]) == (model, 1)
+			and one["parameters"]["size"] == 0.0125 and one["parameters"]["radii"] == [0.005, 0.01]
+		)
+		figures = summary["models"][model]
+		assert finest["value:strength"] == 1e6 * figures["ucs_MPa"]
+		assert (finest["steps"], finest["particles"]) == (figures["steps"], figures["particles"])
+		assert finest["bytes_per_particle"] == pytest.approx(figures["bytes_per_particle"], rel=0.2)
+		points = summary["cost"][model]["points"]
+		last = [point for point in points if point["rung"] == size]
+		assert [point["quantity"] for point in last] == ["strength", "Young's modulus"]
+		mean = sum(
+			one["measured"]["value:strength"] for one in stored if one["parameters"]["model"] == model
+			and one["parameters"]["size"] == 0.0125 and one["parameters"]["radii"] == [0.005, 0.01]
+		) / 3
+		assert last[0]["value"] == pytest.approx(mean) and last[0]["scatter"] > 0
+		for key in ("cpu_s", "steps", "ns_per_particle_step", "bytes_per_particle", "memory_MB"):
+			assert last[0][key] >= 0, key
+	assert {one["parameters"]["size"] for one in stored if one["parameters"]["model"] == "deformable"} == {
+		0.025, 0.0125 * 2**0.5, 0.0125
+	}
+	page = (tmp_path / "report.html").read_text(encoding="utf-8")
+	for text in ("What this accuracy cost", "error of discretisation", "scatter of samples", "damage of concrete"):
+		assert text in said and text in page
+	assert "keep Young's modulus and cohesion" in " ".join(said.split())
+	made = len(asked)
+	run(job, monkeypatch, *small)
+	assert len(asked) == made  # what has been run is kept
+
+
+def test_larger_spheres_are_no_larger_than_the_block_allows(job, monkeypatch, tmp_path):
+	monkeypatch.setattr(sys, "argv", ["scripts/ucs_compare.py", "--out", str(tmp_path)])
+	options = job.read_options()
+	radii = [rung["radii"] for rung in job.ladder("rigid", options).rungs]
+	assert radii == [[0.004, 0.01], [pytest.approx(0.002 * 2**0.5), pytest.approx(0.005 * 2**0.5)], [0.002, 0.005]]
+	assert [rung["size"] for rung in job.ladder("deformable", options).rungs] == [0.012, 0.006, 0.003]
+	options.radii = (0.005, 0.01)
+	assert [rung["radii"] for rung in job.ladder("rigid", options).rungs] == [[0.005, 0.01]]
 
 
 @pytest.mark.parametrize("arguments, message", [

@@ -14,7 +14,9 @@ from yade.ddem.materialpoint import concrete
 from yade.ddem.verification import concrete_rates, concrete_theory, framework, page
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), os.pardir, os.pardir, "scripts", "verify.py")
-KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s", "provenance"]
+KEYS = ["case", "quantity", "value", "reference", "error", "tolerance", "passed", "source", "wall_s",
+	"ns_per_particle_step", "bytes_per_particle", "provenance"
+]
 
 
 @pytest.mark.parametrize(
@@ -160,6 +162,10 @@ def test_script_writes_the_promised_list(verify, tmp_path):
 	assert [list(record) for record in records] == [KEYS] * 10
 	assert [record["case"] for record in records] == ["settling"] * 5 + ["rigid_motion"] * 5
 	assert "10 of 10 checks passed, 2 cases" in printed
+	assert all(record["ns_per_particle_step"] > 0 for record in records)
+	each = re.findall(r"^  (\d+) steps of .* triangles: .+ ns a triangle-step", printed, re.MULTILINE)
+	last = re.fullmatch(r"(\d+) steps of .* triangles: .+ ns a triangle-step.*", printed.strip().splitlines()[-1])
+	assert len(each) == 2 and int(last[1]) == sum(map(int, each))
 
 
 def test_script_fails_when_a_check_fails(verify, monkeypatch):

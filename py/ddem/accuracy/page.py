@@ -13,6 +13,7 @@ _COLUMNS = (
 	("particles", 10, lambda p: _number(p.cost.get("particles"), ".0f")),
 	("steps", 8, lambda p: _number(p.cost.get("steps"), ".0f")),
 	("ns/p-step", 10, lambda p: _number(p.cost.get("ns_per_particle_step"), ".0f")),
+	("B/p", 7, lambda p: _number(p.cost.get("bytes_per_particle"), ".0f")),
 	("core-s", 9, lambda p: _number(p.cpu_s, ".3g")), ("MB", 7, lambda p: _number(p.cost.get("memory_MB"), ".0f")),
 	("error", 10, lambda p: "not run" if p.skipped else "FAILED" if p.failed else _number(p.error, ".2e")),
 	("digits", 7, lambda p: _number(convergence.digits(p.error), ".1f")),
@@ -22,9 +23,9 @@ _COLUMNS = (
 )
 CSV = (
 	"case", "ladder", "kind", "quantity", "of", "unit", "rung", "h", "value", "scatter", "error", "reference",
-	"reference_error", "source", "particles", "unknowns", "steps", "dt_s", "ns_per_particle_step", "cpu_s",
-	"wall_s",
-	"memory_MB", "threads", "digits_of_accuracy", "digits_of_size", "digits_of_efficacy", "pareto", "failed"
+	"reference_error", "source", "particles", "unknowns", "steps", "dt_s", "ns_per_particle_step",
+	"bytes_per_particle", "cpu_s", "wall_s", "memory_MB", "threads",
+	"digits_of_accuracy", "digits_of_size", "digits_of_efficacy", "pareto", "failed"
 )
 
 
@@ -80,6 +81,7 @@ def write(points, told, study, folder, command):
 		machine=study.machine,
 		predictions=[prediction(*one) for one in study.predictions],
 		columns=[(name, cell) for name, _, cell in _COLUMNS[1:]],
+		engines={name: sentences.engines(group) for name, group in ladders.items()},
 		kinds={name: group[0].kind for name, group in ladders.items()},
 		sources={
 			name: list(dict.fromkeys(_source(p) for p in group if p.source))

@@ -9,7 +9,9 @@ from .ladders import COMPARED, label
 
 NOT_RUN = "not run: "  #: how the outcome of a rung begins for which there was no time
 #: costs that are averaged over seeds
-_AVERAGED = ("cpu_s", "wall_s", "ns_per_particle_step", "memory_MB", "steps", "particles", "unknowns")
+_AVERAGED = (
+	"cpu_s", "wall_s", "ns_per_particle_step", "bytes_per_particle", "memory_MB", "steps", "particles", "unknowns"
+)
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class Point:
 			"reference": self.reference,
 			"reference_error": self.reference_error,
 			"source": self.source,
-			**{name: self.cost.get(name) for name in (*_AVERAGED, "dt_s", "threads")},
+			**{name: self.cost.get(name) for name in (*_AVERAGED, "dt_s", "threads", "engines")},
 			"cpu_range_s": list(self.cpu_range),
 			"digits_of_accuracy": convergence.digits(self.error),
 			"digits_of_size": -convergence.digits(self.cost.get("unknowns", math.nan)),
@@ -128,7 +130,9 @@ def _measured(ladder, quantity, rung, outcome, scene):
 		return replace(point, failed=f"the scene gives no '{quantity.key}', but {', '.join(names)}")
 	values = [value for value, _, _ in samples]
 	mean = fmean(values)
-	cost = {name: fmean(one[name] for one in outcome) for name in _AVERAGED}
+	names = [name for name in _AVERAGED if all(name in one for one in outcome)]  # bytes are not known of all scenes
+	cost = {name: fmean(one[name] for one in outcome) for name in names}
+	cost["engines"] = _engines(outcome)
 	cost.update(dt_s=outcome[0]["dt_s"], threads=outcome[0]["threads"])
 	known = [error for _, _, error in samples]
 	point = replace(
@@ -141,6 +145,13 @@ def _measured(ladder, quantity, rung, outcome, scene):
 		point, error=fmean(known), errors=tuple(known), reference=samples[0][1],
 		source=point.source or "the case's reference"
 	)
+
+
+def _engines(outcome):
+	"""Engine -> ns a particle-step by the clock, mean over seeds, the largest first."""
+	names = dict.fromkeys(name for one in outcome for name in one if name.startswith("engine:"))
+	found = {name.partition(":")[2]: fmean(one.get(name, 0.0) for one in outcome) for name in names}
+	return dict(sorted(found.items(), key=lambda item: -item[1]))
 
 
 def _entry(outcome, key):

@@ -29,15 +29,14 @@ def perform(scene, settings):
 	:param scene: as :func:`scene_name` gives it
 	:param settings: of the scene; "seed" among them where it has one
 	:returns: value:NAME, and reference:NAME and error:NAME [-] where there is a reference, of everything that the
-		scene compares; and cpu_s, wall_s [s], steps, particle_steps, particles, unknowns, dt_s [s],
-		ns_per_particle_step, memory_MB, threads
+		scene compares; what :meth:`meter.StepMeter.figures` has; memory_MB, threads
 	"""
 	from yade import O
 
 	from ..meter import StepMeter, memory
 	from ..studies.runs import RECORDER
 	O.reset()
-	before = memory()
+	before, O.timingEnabled = memory(), True
 	with StepMeter(apart=[RECORDER]) as meter:
 		outcome = _scene(scene)(**settings)
 	found = {}
@@ -49,13 +48,8 @@ def perform(scene, settings):
 			found[f"error:{name}"] = float(error)
 	if not meter.steps:
 		raise EvaluationError("the scene made no step")
-	found.update(
-		cpu_s=meter.cpu_s, wall_s=meter.wall_s, steps=meter.steps, particle_steps=meter.particle_steps,
-		particles=meter.particles, unknowns=meter.unknowns, dt_s=meter.dt,
-		ns_per_particle_step=meter.ns_per_particle_step, memory_MB=max(0, memory() - before) / 2**20,
-		threads=O.numThreads
-	)
-	return found
+	memory_MB = max(0, memory() - before) / 2**20
+	return {**found, **meter.figures(), "memory_MB": memory_MB, "threads": O.numThreads}
 
 
 def _scene(name):

@@ -35,6 +35,14 @@ def grouped(points):
 	return groups
 
 
+def supported(point):
+	"""The error of a rung with seeds that its numbers support: no less than the standard error of their mean, nor than
+	that of its reference, which is all that is known where the rung is the reference itself."""
+	of_mean = point.scatter / math.sqrt(len(point.errors)) if point.scatter is not None else 0.0
+	error = point.reference_error if math.isnan(point.error) else point.known
+	return error if math.isnan(error) else max(error, of_mean)
+
+
 def prices(points):
 	"""What errors cost, for the points of one ladder and quantity: "2 % in strength costs 14 s (4 mm); 1 % costs
 	95 s (2.5 mm)". Empty where nothing has an error."""
@@ -304,6 +312,41 @@ def never_worth(points):
 			)
 	names = [f"{rung} ({ladder})" for (ladder, rung), all_ in beaten.items() if all(all_)]
 	return f"Never worth it here: {', '.join(names)}." if names else ""
+
+
+def engines(points):
+	"""Where the time goes in the last setting that gave a result: "Where the time goes at 5 mm: triangles 96 %,
+	…". Empty where no engine was timed."""
+	good = [p for p in points if not p.failed and p.cost.get("engines")]
+	if not good:
+		return ""
+	taken = good[-1].cost["engines"]
+	total = sum(taken.values()) or 1.0
+	told = [f"{name} {per_cent(ns / total)}" for name, ns in taken.items() if ns > 0.005 * total]
+	return f"Where the time goes at {good[-1].rung}: {', '.join(told)}."
+
+
+def of_one(points):
+	"""What the finest sample of a ladder with seeds costs, beside its error of discretisation and the scatter of
+	samples, for the points of one quantity: "strength with 3 mm: …". Empty where it gave no result."""
+	good = [p for p in points if not p.failed and p.step is not None]
+	if not good:
+		return ""
+	finest = min(good, key=lambda p: p.step)
+	told = f"{finest.quantity} with {finest.rung}: {seconds(finest.cpu_s)} of processor time a sample"
+	error = supported(finest)
+	if math.isfinite(error) and finest.source:
+		told += f", error of discretisation {per_cent(error)} ({finest.source})"
+	else:
+		told += ", error of discretisation not known: there is no coarser sample to compare with"
+	if finest.scatter is None:
+		return told + "."
+	told += f", scatter of samples {per_cent(finest.scatter)}"
+	if math.isfinite(error) and finest.source:
+		told += ": more seeds show more than a finer sample" if finest.scatter > error else (
+			": a finer sample shows more than more seeds"
+		)
+	return told + "."
 
 
 def failures(points):

@@ -45,7 +45,7 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 		claims=said, packings=len(paper[0].records), columns=columns, rows=_rows(groups),
 		breaks=_breaks(groups), settings=settings, command=command,
 		versions=versions, pictures=pages.save(drawn, folder, pdf), effects=effects(groups),
-		first_run=groups[0].label, **texts
+		engines=engines(groups), first_run=groups[0].label, **texts
 	)
 	return pages.write(page, os.path.join(folder, "bonded_figures.html"))
 
@@ -53,6 +53,23 @@ def write(groups, folder, command, options, versions, settings, pictures=True, p
 def effects(groups):
 	"""What the first run simulated, a list of dicts; empty for runs of versions that did not say so."""
 	return groups[0].records[0].summary.get("effects", [])
+
+
+def engines(groups):
+	"""Where the time of the first run went, see :func:`studies.runs.plain_costs`; empty for runs of versions that
+	did not say so."""
+	return groups[0].records[0].summary.get("engines", [])
+
+
+def told(groups):
+	"""What the steps of all runs have cost, in a line, as :func:`meter.line` says it; recording left out."""
+	from .. import meter  # needs YADE, as who has made steps does
+	runs = [record.summary for group in groups for record in group.records]
+	cpu = sum(run["cpu_s"] - run["recording_s"] for run in runs)
+	counts = [run["particles"] for run in runs]
+	steps = sum(run["steps"] for run in runs)
+	particle_steps = sum(run["steps"] * run["particles"] for run in runs)
+	return meter.line("sphere", steps, particle_steps, cpu, min(counts), max(counts))
 
 
 def table(groups):
@@ -264,6 +281,7 @@ def _plain(groups, said, texts, written, command, options, versions):
 		} for group in groups],
 		"claims": [vars(claim) for claim in said],
 		"effects": effects(groups),
+		"engines": engines(groups),
 		**texts,
 	}
 

@@ -18,6 +18,7 @@ from matplotlib import rc_context
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
 
 from .. import plots, provenance
+from ..studies.runs import plain_costs
 from ..studies.calibration_quantities import MEASURES, TUNABLES
 from . import pages
 
@@ -121,6 +122,31 @@ class CalibrationReport:
 	def effects(self):
 		"""What the scene of the best point simulated, see :meth:`effect_table.EffectTable.rows`."""
 		return self.bench.effects(self.outcome.best.values) if self.outcome.best else []
+
+	@property
+	def engines(self):
+		"""Where the time of the best point goes: rows for a page, see :func:`studies.runs.plain_costs`."""
+		measured = self.outcome.best.measured if self.outcome.best else {}
+		taken = {name.partition(":")[2]: ns for name, ns in measured.items() if name.startswith("engine:")}
+		total = sum(taken.values()) or 1.0
+		return plain_costs(sorted(((n, ns, ns / total) for n, ns in taken.items()), key=lambda row: -row[1]))
+
+	def told(self):
+		"""What the steps of the evaluations that were made now have cost, in a line; empty where none was."""
+		made = {
+			tuple(sorted(step.point.values.items())): step.point.measured
+			for step in self.outcome.steps
+			if not step.point.reused and "particle_steps" in step.point.measured
+		}
+		if not made:
+			return ""
+		from .. import meter  # needs YADE, as who has made steps does
+		# measures are means over the cases
+		cases = len(self.bench.cases)
+		sums = [cases * sum(m[n] for m in made.values()) for n in ("steps", "particle_steps", "cpu_s")]
+		counts = [round(m["particles"]) for m in made.values()]
+		kind = "sphere" if self.model == "rigid" else "triangle"
+		return meter.line(kind, round(sums[0]), round(sums[1]), sums[2], min(counts), max(counts))
 
 	def verdict(self):
 		"""One sentence: whether the targets are met."""

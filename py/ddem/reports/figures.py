@@ -188,11 +188,11 @@ def rotation(runs):
 
 def engines(runs):
 	"""Time per particle and step that each engine took."""
-	fig, axes = _figure(1, plots.PAGE, 13 + 4.8 * sum(len(_engine_costs(run)) + 1 for run in runs))
+	fig, axes = _figure(1, plots.PAGE, 13 + 4.8 * sum(len(run.engine_costs(0.005)) + 1 for run in runs))
 	ax, place, ticks = axes[0], 0.0, []
 	with rc_context(plots.STYLE):
 		for run in runs:
-			costs = _engine_costs(run)
+			costs = run.engine_costs(0.005)
 			for name, cost, share in costs:
 				ax.barh(
 					place, cost, color=MODEL_COLOURS[run.model], height=0.72,
@@ -223,20 +223,6 @@ ALL = {
 	"evolution": evolution,
 	"final_damage": final_damage, "rotation": rotation, "energy": energy, "engines": engines
 }
-
-
-def _engine_costs(run, least=0.005):
-	"""(name, ns per particle and step, share of all engines), the largest first; those with less than *least* of
-	the time together as "others"."""
-	total = sum(seconds for _, seconds, _ in run.engines) or 1.0
-	rows = [
-		(name, 1e9 * seconds / run.steps / run.particles, seconds / total)
-		for name, seconds, calls in run.engines
-		if calls
-	]
-	large = sorted((row for row in rows if row[2] >= least), key=lambda row: -row[1])
-	small = [row for row in rows if row[2] < least]
-	return large + ([("others", sum(row[1] for row in small), sum(row[2] for row in small))] if small else [])
 
 
 def _draw_damage(snapshot, ax):

@@ -43,6 +43,11 @@ def save(figures, folder, pdf=False):
 	return pictures
 
 
+def short(value):
+	"""A number with three digits, whole from a hundred on: "9.87", "1234"."""
+	return f"{value:.3g}" if abs(value) < 100 else f"{value:.0f}"
+
+
 def render(template, filters=None, **values):
 	"""A page from a template of this package's, which extends page.html.
 
@@ -53,7 +58,7 @@ def render(template, filters=None, **values):
 		loader=FileSystemLoader(_TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True,
 		lstrip_blocks=True
 	)
-	environment.filters.update(filters or {})
+	environment.filters.update({"short": short, **(filters or {})})
 	origin = provenance.record()
 	comment = Markup(provenance.comment(origin))
 	return environment.get_template(template).render(origin=origin, comment=comment, **values)

@@ -41,6 +41,7 @@ ROWS = (
 	("recording_s", "of it for recording", "s", 1, "{:.1f}"),
 	("ns_per_particle_step", "per particle and step", "ns", 1, "{:,.0f}"),
 	("ns_per_degree_of_freedom_step", "per degree of freedom and step", "ns", 1, "{:,.0f}"),
+	("bytes_per_particle", "memory per particle", "B", 1, "{:,.0f}"),
 )
 #: rows that are left out where no run has them
 _IF_ANY = {"bonds", "ucs_MPa", "tensile_MPa", "broken_in_tension", "broken_in_shear"}
@@ -59,11 +60,12 @@ class Report:
 	:param notes: sentences for the report: choices, calibration, limits
 	:param pictures: False leaves the pictures out
 	:param pdf: write each picture as a PDF as well
+	:param cost: what this accuracy cost, an :class:`accuracy.section.Section`; None: it was not asked for
 	"""
 
 	def __init__(
 		self, runs, folder, title, settings=(), command="", options=None, versions=None, notes=(),
-		pictures=True, pdf=False
+		pictures=True, pdf=False, cost=None
 	):
 		if not runs:
 			raise ValueError("a report needs at least one run")
@@ -71,7 +73,7 @@ class Report:
 			list(runs), str(folder), title, list(settings), command
 		)
 		self.options, self.versions, self.notes = dict(options or {}), dict(versions or {}), list(notes)
-		self.pictures, self.pdf = pictures, pdf
+		self.pictures, self.pdf, self.cost = pictures, pdf, cost
 		self.written = datetime.datetime.now().astimezone().replace(microsecond=0)
 
 	def summary(self):
@@ -91,6 +93,7 @@ class Report:
 				for run in self.runs
 			},
 			"cost_ratio_deformable_to_rigid": cost_ratios(self.runs),
+			**({"cost": self.cost.plain()} if self.cost else {}),
 		}
 
 	def table_rows(self):
@@ -137,11 +140,11 @@ class Report:
 			run.series.write(self._path(f"{run.model}.csv"))
 			if run.broken is not None:
 				broken_bonds.write(run.broken, self._path(f"{run.model}_broken_bonds.csv"))
-		pictures = (
-			pages.save({name: draw(self.runs) for name, draw in figures.ALL.items()}, self.folder, self.pdf)
-			if self.pictures
-			else {}
-		)
+		drawn = {}
+		if self.pictures:
+			drawn = {name: draw(self.runs) for name, draw in figures.ALL.items()}
+			drawn.update(self.cost.figures() if self.cost else {})
+		pictures = pages.save(drawn, self.folder, self.pdf)
 		return pages.write(self.html(pictures), self._path("report.html"))
 
 	def html(self, pictures):
@@ -153,7 +156,7 @@ class Report:
 			machine=summary["machine"], runs=self.runs, by_model={run.model: run for run in self.runs},
 			summaries=summary["models"], rows=self.table_rows(),
 			ratios=summary["cost_ratio_deformable_to_rigid"], pictures=pictures, options=self.options,
-			one=self.runs[0] if len(self.runs) == 1 else None
+			one=self.runs[0] if len(self.runs) == 1 else None, cost=self.cost
 		)
 
 	def _path(self, name):

@@ -31,7 +31,8 @@ FIGURES = (
 	("broken_at_end_percent", "broken at the end", "%", "{:.0f}"),
 	("force_bottom_kN", "largest force, bottom", "kN", "{:.1f}"),
 	("force_top_kN", "largest force, top", "kN", "{:.1f}"), ("time_bottom_ms", "at, bottom", "ms", "{:.3f}"),
-	("time_top_ms", "at, top", "ms", "{:.3f}")
+	("time_top_ms", "at, top", "ms", "{:.3f}"),
+	("ns_per_particle_step", "a sphere and step", "ns", "{:.0f}"), ("bytes_per_particle", "a sphere", "B", "{:.0f}")
 )
 
 
@@ -74,6 +75,8 @@ class Record:
 			"force_top_kN": series["force_top"][top] / 1e3,
 			"time_bottom_ms": 1e3 * series["time"][bottom],
 			"time_top_ms": 1e3 * series["time"][top],
+			"ns_per_particle_step": summary.get("ns_per_particle_step"),
+			"bytes_per_particle": summary.get("bytes_per_particle"),
 		}
 
 

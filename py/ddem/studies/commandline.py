@@ -1,6 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """What scripts share: kinds of options with errors for people, the number of threads, and how to repeat a run."""
 import argparse
+import contextlib
 import glob
 import hashlib
 import math
@@ -15,6 +16,8 @@ import numpy as np
 import yade.config
 from yade import O
 
+from .. import meter
+from .runs import RECORDER
 from .workers import Workers
 
 _RESTARTED = "YADE_DDEM_RESTARTED"  # set in the environment of a YADE that was started by restart()
@@ -121,6 +124,23 @@ def require_writable(parser, option, folder):
 		tempfile.TemporaryFile(dir=folder).close()
 	except OSError as error:
 		parser.error(f"argument {option}: cannot write into {folder}: {error.strerror}")
+
+
+@contextlib.contextmanager
+def steps_told():
+	"""Say in the end what all steps have cost that were made meanwhile, a line for each kind of particle, recorders
+	left out; for a script's main::
+
+		@commandline.steps_told()
+		def main():
+			...
+	"""
+	with meter.StepMeter(apart=[RECORDER]) as counted:
+		try:
+			yield counted
+		finally:
+			for text in counted.told():
+				print(text, flush=True)
 
 
 def restart(threads):

@@ -50,6 +50,8 @@ class Run:
 	test: str = "compression"  # or "tension", where stress, strain and forces are positive in tension
 	effects: list = field(default_factory=list)  # of the scene at the end, see effect_table.EffectTable.rows
 	broken: np.ndarray = None  # records of the broken bonds (broken_bonds.DTYPE), None where there are no bonds
+	recorded: float = None  # processor time of the recording [s]; None: as by the clock
+	bytes_per_particle: float = None  # see meter.bytes_per_particle; None where it is not known
 
 	@property
 	def strength(self) -> Strength:
@@ -66,9 +68,20 @@ class Run:
 		return float(max(np.abs(self.energy("input")).max(), np.max(found)))
 
 	@property
+	def recording(self):
+		"""Wall time of the recorder [s]."""
+		return sum(seconds for name, seconds, _ in self.engines if name == RECORDER)
+
+	@property
 	def seconds_per_step(self):
-		"""Wall time of a step in all engines but the recorder [s]."""
-		return sum(seconds for name, seconds, _ in self.engines if name != RECORDER) / self.steps
+		"""Processor time of a step, of all threads together, the recorder left out [s]; see :mod:`meter`."""
+		recorded = self.recording if self.recorded is None else self.recorded
+		return max(0.0, self.busy - recorded) / self.steps
+
+	def engine_costs(self, least=0.0):
+		"""Where the time goes: (name, ns per particle and step by the clock, share of all engines), the largest
+		first; those with less than *least* of the time together as "others"."""
+		return engine_costs(self.engines, self.steps * self.particles, least)
 
 	def energy(self, part):
 		"""One of :data:`ENERGY_PARTS`, or "input", over time [J];
@@ -93,10 +106,12 @@ class Run:
 			"steps": self.steps,
 			"wall_s": self.wall,
 			"cpu_s": self.busy,
-			"recording_s": sum(seconds for name, seconds, _ in self.engines if name == RECORDER),
+			"recording_s": self.recording,
 			"setup_s": self.setup,
 			"ns_per_particle_step": 1e9 * self.seconds_per_step / self.particles,
 			"ns_per_degree_of_freedom_step": 1e9 * self.seconds_per_step / self.degrees_of_freedom,
+			"bytes_per_particle": self.bytes_per_particle,
+			"engines": plain_costs(self.engine_costs()),
 			"test": self.test,
 			"ucs_MPa": measures.ucs / 1e6 if self.test == "compression" else None,
 			"tensile_MPa": measures.ucs / 1e6 if self.test == "tension" else None,
@@ -116,6 +131,30 @@ class Run:
 			name: None if isinstance(value, float) and not math.isfinite(value) else value
 			for name, value in figures.items()
 		}
+
+
+def engine_costs(engines, particle_steps, least=0.0):
+	"""Where the time goes, see :meth:`Run.engine_costs`.
+
+	:param engines: (name, wall seconds, calls) of each
+	:param particle_steps: steps times particles
+	"""
+	ran = {}  # those of one name together, such as of two platens
+	for name, seconds, calls in engines:
+		if calls:
+			ran[name] = ran.get(name, 0.0) + seconds
+	total = sum(ran.values()) or 1.0
+	rows = [(name, 1e9 * seconds / particle_steps, seconds / total) for name, seconds in ran.items()]
+	large = sorted((row for row in rows if row[2] >= least), key=lambda row: -row[1])
+	small = [row for row in rows if row[2] < least]
+	if small:
+		large.append(("others", sum(row[1] for row in small), sum(row[2] for row in small)))
+	return large
+
+
+def plain_costs(rows):
+	"""Rows of :func:`engine_costs` for files and pages: dicts of engine, ns_per_particle_step, share."""
+	return [{"engine": name, "ns_per_particle_step": ns, "share": share} for name, ns, share in rows]
 
 
 def cost_ratios(runs):

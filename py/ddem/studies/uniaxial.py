@@ -8,11 +8,10 @@ from tqdm import tqdm
 
 from yade import ConcreteDamageMat, O, PyRunner, timing
 
-from .. import loading
+from .. import loading, meter
 from ..block import Block
 from ..effect_table import effects
 from ..energy import EnergyBalance
-from ..meter import recording
 from ..series import Series
 from .runs import RECORDER, Run
 from .snapshots import SphereSnapshot, TriangleSnapshot
@@ -155,9 +154,10 @@ class CompressionTest:
 		]
 		O.timingEnabled = True
 		timing.reset()
-		self._look(files=True)
-		running, self._first = self, O.iter
-		start, busy = time.perf_counter(), time.process_time()
+		with meter.beside_the_scene():
+			self._look(files=True)
+		running, self._first, self._bytes = self, O.iter, None
+		start, busy, beside = time.perf_counter(), time.process_time(), meter.time_beside()
 		try:
 			with tqdm(
 				total=steps, unit="step", desc=self.specimen.title, mininterval=0.5,
@@ -171,11 +171,16 @@ class CompressionTest:
 		if self.stopped is None:
 			self.stopped = "largest strain reached"
 		self._look(files=True)
-		return self._result(wall, busy)
+		return self._result(wall, busy, meter.time_beside() - beside)
 
-	@recording()
 	def record(self):
 		"""Add a row to the record; called by the scene."""
+		with meter.beside_the_steps():
+			self._record()
+
+	def _record(self):
+		if not self.rows:
+			self._bytes = meter.bytes_per_particle()
 		energies = self.book.record() if self.book else {}
 		row = {
 			"time": O.time,
@@ -211,7 +216,7 @@ class CompressionTest:
 			for recorder in self.recorders:
 				recorder()
 
-	def _result(self, wall, busy):
+	def _result(self, wall, busy, recorded):
 		units = {
 			"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "damage": "-"
 		}
@@ -224,12 +229,12 @@ class CompressionTest:
 			model=specimen.model, title=specimen.title, particle=specimen.particle,
 			particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt,
-			steps=O.iter - self._first, wall=wall, busy=busy,
+			steps=O.iter - self._first, wall=wall, busy=busy, recorded=recorded,
 			threads=O.numThreads, series=series, snapshots=self.snapshots,
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
 			extra=specimen.figures(),
-			test=self.kind, broken=specimen.broken, effects=effects().rows()
+			test=self.kind, broken=specimen.broken, effects=effects().rows(), bytes_per_particle=self._bytes
 		)
 
 

@@ -213,6 +213,17 @@ def perform(setup, values, case, cache=None):
 	}
 
 
+def perform_and_tell(setup, values, case, cache=None):
+	"""The same as :func:`perform`, with what the steps cost (:meth:`meter.StepMeter.figures`), and under
+	:data:`evaluations.EFFECTS` what the scene simulated."""
+	from ..effect_table import effects
+	from ..meter import StepMeter
+	from .runs import RECORDER
+	with StepMeter(apart=[RECORDER]) as meter:
+		measured = perform(setup, values, case, cache)
+	return {**measured, **meter.figures(), EFFECTS: effects().rows()}
+
+
 def material(model, values, density):
 	"""The material of these attributes; what else it has are the defaults of its class.
 
@@ -310,9 +321,7 @@ class SeparateYade:
 
 
 def measure(asked):
-	"""What the YADE of an evaluation does: perform the test of a request, and return measures and effects."""
-	from ..effect_table import effects
+	"""What the YADE of an evaluation does: perform the test of a request, and return what it gave and simulated."""
 	setup = asked["setup"]
 	setup["radii"] = setup["radii"] and tuple(setup["radii"])
-	measured = perform(Setup(**setup), asked["values"], asked["case"], asked["cache"])
-	return {**measured, EFFECTS: effects().rows()}
+	return perform_and_tell(Setup(**setup), asked["values"], asked["case"], asked["cache"])

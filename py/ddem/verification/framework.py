@@ -14,6 +14,8 @@ import traceback
 from yade import O
 
 from ..effect_table import effects
+from ..meter import StepMeter
+from ..studies.runs import engine_costs
 
 #: groups of cases, in the order of the report
 GROUPS = (
@@ -37,6 +39,8 @@ class Record:
 	passed: bool
 	source: str  # of the reference
 	wall_s: float  # wall time of the whole case, pictures left out [s]
+	ns_per_particle_step: float = math.nan  # of the steps of the whole case, nan where it makes none; see meter
+	bytes_per_particle: float = None  # of its largest scene, None where it is not known; see meter
 
 	def plain(self):
 		"""As a dict for JSON, None where a number is not finite."""
@@ -119,6 +123,9 @@ class Result:
 	error: str = ""  # traceback of a case that raised
 	# of the scene in which it ended, see effect_table.EffectTable.rows
 	effects: list = dataclasses.field(default_factory=list)
+	told: list = dataclasses.field(default_factory=list)  # what its steps cost, a line a kind of particle
+	# (name, ns per particle and step, share) of each engine, see runs.engine_costs; of runs with pictures
+	engines: list = dataclasses.field(default_factory=list)
 
 	@property
 	def passed(self):
@@ -180,15 +187,19 @@ class Check:
 			("runs to its end", math.nan, 1.0, math.nan, 0.0, False, f"{type(error).__name__}: {error}")
 		)
 
-	def result(self, case, error=""):
+	def result(self, case, meter, error=""):
 		wall = time.perf_counter() - self._began - self._drawing
+		cost = meter.ns_per_particle_step, meter.bytes_per_particle
+		taken = [(name, seconds, 1) for name, seconds in meter.engines.items()]
 		return Result(
 			case,
-			[Record(self._case, *row, wall) for row in self._rows],
+			[Record(self._case, *row, wall, *cost) for row in self._rows],
 			self.pictures,
 			self.notes,
 			wall,
 			error,
+			told=meter.told(),
+			engines=engine_costs(taken, meter.particle_steps) if taken else [],
 		)
 
 
@@ -257,13 +268,16 @@ def run(which, pictures=False, **settings):
 			f"{', '.join(which.settings) or 'none'}"
 		)
 	O.reset()
-	check = Check(which.name, pictures)
+	check, meter, timed = Check(which.name, pictures), StepMeter(), O.timingEnabled
+	O.timingEnabled = timed or pictures
 	try:
-		which.function(check, **settings)
-		result = check.result(which)
+		with meter:
+			which.function(check, **settings)
+		result = check.result(which, meter)
 		return dataclasses.replace(result, effects=effects().rows()) if pictures else result
 	except Exception as error:  # the other cases still run
 		check.fail(error)
-		return check.result(which, traceback.format_exc())
+		return check.result(which, meter, traceback.format_exc())
 	finally:
+		O.timingEnabled = timed
 		O.reset()

@@ -13,6 +13,7 @@ Nothing here needs YADE. The input script of ESyS-Particle is compression.py, wh
 import collections
 import contextlib
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -87,6 +88,10 @@ class Record:
 	# wall time from record to record without the first step, with recording [s]
 	pieces: list = field(default_factory=list)
 	threads: int = 1  # that calculate
+	busy: float = math.nan  # processor time of the same steps, of all threads [s]; nan where it is not known
+	bytes_per_particle: float = None  # see meter.bytes_per_particle; None where it is not known
+	engines: list = field(default_factory=list)  # (name, ns per particle and step, share), see runs.engine_costs
+	effects: list = field(default_factory=list)  # see effect_table.EffectTable.rows
 
 	@property
 	def seconds(self):
