@@ -30,7 +30,8 @@ import os
 import time
 
 from yade import (
-	BondedMat, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O, ddem
+	BondedMat, ConcreteDamageMat, DeformableElastMat, DeformableEngine, DeformableTimeStepper, ForceResetter, O,
+	ddem
 )
 from yade.ddem import provenance, vtk
 from yade.ddem.accuracy import estimate, study
@@ -259,8 +260,8 @@ def cost(runs, shares, options):
 		(
 			"The same test on coarser samples and with other seeds, each in a YADE of its own: block, "
 			"platens and law are those above, sizes and seeds change. Errors are of the mean over "
-			f"{options.cost} seeds from {options.seed} on, scatter is their standard deviation; seconds are "
-			"processor time of the steps of one sample."
+			f"{options.cost} seeds from {options.seed} on, scatter is their standard deviation; seconds "
+			"are processor time of the steps of one sample."
 		)
 	]
 	if "rigid" in options.models:
@@ -271,7 +272,8 @@ def cost(runs, shares, options):
 			"matched anew for each size would have less of it."
 		)
 	return Section(
-		{run.title: work.points(one) for run, one in zip(runs, ladders)}, {run.title: run.model for run in runs},
+		{run.title: work.points(one) for run, one in zip(runs, ladders)},
+		{run.title: run.model for run in runs},
 		said, shares
 	)
 
@@ -328,8 +330,9 @@ def read_options():
 		default=0,
 		metavar="SEEDS",
 		help=(
-			"report what this accuracy cost: run two coarser samples beside each, with so many seeds (2 where "
-			"no number is given). With the preset quick it adds a minute and a half, with full ten times that"
+			"report what this accuracy cost: run two coarser samples beside each, with so many seeds "
+			"(2 where no number is given). With the preset quick it adds a minute and a half, with full "
+			"ten times that"
 		),
 	)
 	test = parser.add_argument_group("test")

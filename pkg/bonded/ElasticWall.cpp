@@ -38,6 +38,17 @@ namespace {
 		return phys;
 	}
 
+	/// A sphere that a wall has left behind altogether is no contact: walls have met, or a sphere was too fast.
+	[[noreturn]] void stopBehindWall(const Scene& scene, const Interaction& I, Real depth)
+	{
+		std::ostringstream text;
+		text << "sphere #" << I.getId2() << " is " << depth << " m behind the wall #" << I.getId1()
+		     << " in step " << scene.iter << ", t = " << scene.time
+		     << " s, more than its radius: the platens have met, or it came too fast for the time step; "
+		        "end the run earlier, or load slower";
+		throw std::runtime_error(text.str());
+	}
+
 	[[noreturn]] void refuseWall(int wall, const std::string& why)
 	{
 		throw std::invalid_argument("cannot bond spheres to the wall #" + std::to_string(wall) + ": " + why);
@@ -122,6 +133,7 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 		           force    = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
 		if (!(force > 0)) return false;
+		if (isWall && distance < -geom.radius2) stopBehindWall(*scene, *I, -distance);
 		stored = 0.5 * force * (geom.radius2 - distance);
 	}
 	const Vector3r force = phys.normalForce + phys.shearForce;

@@ -27,6 +27,7 @@ Crush a prism of bonded spheres::
 :func:`engines` writes that list. SI units; a platen's force, stress and strain are positive in compression.
 """
 import math
+import warnings
 
 import numpy as np
 
@@ -41,6 +42,7 @@ from yade import (
 )
 
 from . import broken_bonds, meter
+from . import packing as packings
 from .arrays import BodyIds, fixed
 
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
@@ -53,19 +55,20 @@ _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bo
 def append(packing, material, gap=None, color=None, mass_law="solid"):
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 
-	:param packing: :class:`packing.Packing`. One layer (:attr:`packing.Packing.flat`) stays in its plane: motion
-		along z and rotation about x and y are blocked.
+	:param packing: :class:`packing.Packing`, or what :func:`packing.of` takes, as YADE's SpherePack. One layer
+		(:attr:`packing.Packing.flat`) stays in its plane:
+		motion along z and rotation about x and y are blocked.
 	:param material: a :yref:`BondedMat` of O.materials, or its label.
 	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds,
 		or 0.0025 of the largest radius where it has none.
 	:param color: of the spheres, three numbers from 0 to 1.
 	:param mass_law: "solid": density times volume, 4/3 pi r³; "cube":
 		density times r³, the default of ESyS-Particle (with 1 g/mm³ = 1e6 kg/m³).
-	:returns: :class:`BondedSample`
+	:returns: :class:`BondedSample`; a warning says where it is not in one piece
 	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative
 		gap, nothing to bond. Nothing is appended then.
 	"""
-	material = _material(material)
+	material, packing = _material(material), packings.of(packing)
 	if mass_law not in ("solid", "cube"):
 		raise ValueError(
 			f"mass_law = '{mass_law}' is unknown; use 'solid' (density times 4/3 pi r³) or 'cube' "
@@ -101,17 +104,35 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 	# one by one: bodies that YADE takes as a list are never freed, with their bonds 1.5 kB a bond
 	ids = BodyIds([O.bodies.append(body) for body in spheres])
 	Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]])
+	_warn_of_pieces(packing, pairs)
 	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
+
+
+def _warn_of_pieces(packing, pairs):
+	"""A specimen must hold together; where it does not, its strength would be that of its largest piece."""
+	sizes = np.bincount(packing.pieces(pairs))
+	if len(sizes) == 1:
+		return
+	loose = int((sizes == 1).sum())
+	warnings.warn(
+		(
+			f"{len(packing)} spheres with {len(pairs)} bonds, {2 * len(pairs) / len(packing):.1f} "
+			f"a sphere, are in {len(sizes)} pieces: {sizes[0]} in the largest, {loose} loose; a larger "
+			"gap= or a wider range of radii joins them"
+		),
+		stacklevel=3,
+	)
 
 
 class BondedSample:
 	"""Bonded spheres appended together, and their state as arrays, a row per sphere in the order of :attr:`ids`.
+	A sphere that is erased (``O.bodies.erase``) has no row any more.
 
 	The arrays are copies and cannot be written to; velocities and positions are set in the State of the spheres.
 	"""
 
 	def __init__(self, ids, lower, upper, bonds):
-		self.ids = BodyIds(ids)  #: body ids of the spheres, see :class:`arrays.BodyIds`
+		self._appended = BodyIds(ids)
 		#: corners of the box at the start [m]
 		self.lower, self.upper = np.array(lower, float), np.array(upper, float)
 		self.initial_bonds = bonds  #: number of bonds at the start
@@ -127,6 +148,12 @@ class BondedSample:
 		sample = cls([b.id for b in bodies], (start - radii).min(axis=0), (start + radii).max(axis=0), 0)
 		sample.initial_bonds = len(sample.bonds) + len(sample.broken)
 		return sample
+
+	@property
+	def ids(self):
+		"""Body ids of the spheres that are there (n,), see :class:`arrays.BodyIds`."""
+		there = [i for i in self._appended if i < len(O.bodies) and O.bodies[i]]
+		return self._appended if len(there) == len(self._appended) else BodyIds(there)
 
 	def __len__(self):
 		return len(self.ids)
@@ -156,6 +183,13 @@ class BondedSample:
 	def radii(self):
 		"""Radii (n,) [m]."""
 		return fixed(np.array([O.bodies[i].shape.radius for i in self.ids]))
+
+	def rows(self, ids):
+		"""Rows of bodies in the arrays, in the shape of *ids*; -1 for those that are not there."""
+		own, ids = self.ids, np.asarray(ids, int)
+		row = np.full(max(int(own.max(initial=-1)), int(ids.max(initial=-1))) + 1, -1)
+		row[own] = np.arange(len(own))
+		return row[ids]
 
 	def hold_faces(self, axis, dof):
 		"""Hold the spheres that touch the two faces of the box across *axis* (0, 1 or 2) in one direction, "x",
@@ -209,19 +243,18 @@ class BondedSample:
 	@property
 	def broken_fraction(self):
 		"""Broken bonds over those at the start [-]."""
-		return law().brokenAmong(self.ids.tolist()) / max(self.initial_bonds, 1)
+		return law().brokenAmong(self._appended.tolist()) / max(self.initial_bonds, 1)
 
 	def _mine(self, pairs):
 		"""Which pairs of body ids are both of this sample."""
-		return np.isin(pairs, self.ids).all(axis=1)
+		return np.isin(pairs, self._appended).all(axis=1)
 
 	@property
 	def damage(self):
 		"""Broken share of the bonds each sphere had at the start (n,) [-]; 0 for a sphere that had none."""
-		size = int(self.ids.max()) + 1
-		broken = self.broken
-		lost = np.bincount(np.concatenate([broken["id1"], broken["id2"]]), minlength=size)[self.ids]
-		held = np.bincount(self.bonds.ravel(), minlength=size)[self.ids]
+		size, ids, broken = int(self._appended.max()) + 1, self.ids, self.broken
+		lost = np.bincount(np.concatenate([broken["id1"], broken["id2"]]), minlength=size)[ids]
+		held = np.bincount(self.bonds.ravel(), minlength=size)[ids]
 		return fixed(lost / np.maximum(lost + held, 1))
 
 	@property
@@ -230,7 +263,9 @@ class BondedSample:
 		return float(np.pi * (self.broken["radius"]**2).sum())
 
 
-def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False, shear_stiffness=0.0):
+def platens(
+	sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False, shear_stiffness=0.0, area=None
+):
 	"""Set elastic walls below and above a sample and drive them towards each other along y, or apart.
 
 	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face,
@@ -243,6 +278,8 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 		good, and feel its spring in both directions.
 	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract.
 		ESyS-Particle's NRotBondedWall has that of *stiffness*.
+	:param area: of the loaded face [m²], for specimens that do not fill their box: pi/4 D² of a cylinder. None:
+		that of the box.
 	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
 	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not
 		positive, no sphere at a wall that is to be bonded. Nothing is appended then.
@@ -256,6 +293,12 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 		)
 	if not (ramp >= 0 and math.isfinite(ramp)):
 		raise ValueError(f"ramp = {ramp} s must not be negative")
+	width, _, depth = sample.upper - sample.lower
+	box = float(width * depth)
+	if area is not None and not 0 < area <= 1.001 * box:
+		raise ValueError(
+			f"area = {area} m² must be positive, and not above that of the sample's box, {box:.6g} m²"
+		)
 	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
 	held = []
 	if bonded:
@@ -274,14 +317,14 @@ def platens(sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False
 	bottom, top = (O.bodies.append(wall) for wall in (bottom, top))
 	for wall, spheres in zip((bottom, top), held):
 		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
-	return Platens(sample, bottom, top, velocity, ramp, both)
+	return Platens(sample, bottom, top, velocity, ramp, both, area)
 
 
 class Platens:
 	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11).
 	Compression is positive."""
 
-	def __init__(self, sample, bottom, top, velocity, ramp, both):
+	def __init__(self, sample, bottom, top, velocity, ramp, both, area=None):
 		self.sample = sample
 		self.bottom, self.top = bottom, top  #: body ids of the walls
 		self.engines = [
@@ -294,7 +337,7 @@ class Platens:
 				)
 			)
 		width, self.height, depth = sample.upper - sample.lower
-		self.area = float(width * depth)  #: of the loaded face [m²]
+		self.area = float(width * depth) if area is None else area  #: of the loaded face [m²]
 
 	@property
 	def force_top(self):

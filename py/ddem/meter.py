@@ -169,6 +169,11 @@ def _engines():
 	return [engine for engine in O.engines if isinstance(engine, DeformableEngine)]
 
 
+def _now():
+	"""Processor time of all threads, and time by the clock [s]."""
+	return time.process_time(), time.perf_counter()
+
+
 _beside = (0.0, 0.0)  # processor time and wall time of what has run beside the steps so far [s]
 
 
@@ -176,11 +181,12 @@ _beside = (0.0, 0.0)  # processor time and wall time of what has run beside the 
 def beside_the_steps():
 	"""What runs within steps meanwhile, as a record is taken, does not count as theirs."""
 	global _beside
-	busy, clock = time.process_time(), time.perf_counter()
+	busy, clock = _now()
 	try:
 		yield
 	finally:
-		_beside = _beside[0] + time.process_time() - busy, _beside[1] + time.perf_counter() - clock
+		busy_then, clock_then = _now()
+		_beside = _beside[0] + busy_then - busy, _beside[1] + clock_then - clock
 
 
 def time_beside():
@@ -264,12 +270,12 @@ class StepMeter:
 
 	def _begin(self):
 		if self._began is None:
-			self._began = (O.iter, _times(), _beside, time.process_time(), time.perf_counter())
+			self._began = (O.iter, _times(), _beside, *_now())
 
 	def _end(self):
 		if self._began is None:
 			return
-		now = time.process_time(), time.perf_counter()
+		now = _now()
 		first, times, beside, busy, clock = self._began
 		self._began, took = None, {}
 		for name, after in _times().items():

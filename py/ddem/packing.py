@@ -6,6 +6,7 @@ import hashlib
 import json
 import math
 import os
+import re
 import sys
 
 import numpy as np
@@ -94,6 +95,17 @@ class Packing:
 		pairs = np.concatenate(found)
 		return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
 
+	def pieces(self, pairs):
+		"""Number of the piece to which each sphere belongs (n,), 0 for the largest, where *pairs* (m, 2) hold
+		spheres together."""
+		from scipy.sparse import coo_array
+		from scipy.sparse.csgraph import connected_components
+		pairs = np.asarray(pairs, int).reshape(-1, 2)
+		graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(self), len(self)))
+		count, piece = connected_components(graph, directed=False)
+		order = np.argsort(-np.bincount(piece, minlength=count), kind="stable")
+		return np.argsort(order)[piece]
+
 	def write(self, particles, bonds=None, length_unit="m"):
 		"""Write ``id,x,y,z,r`` to *particles* and, where given, ``i,j`` to *bonds*, lengths in *length_unit*;
 		all digits are kept."""
@@ -112,6 +124,27 @@ class Packing:
 		with provenance.csv_writer(bonds) as writer:
 			writer.writerow(["i", "j"])
 			writer.writerows(self.bonds.tolist())
+
+
+def of(spheres, lower=None, upper=None):
+	"""A :class:`Packing` of anything that lists centres and radii: YADE's ``pack.SpherePack`` (makeCloud,
+	fromSimulation, load), the list of bodies that ``pack.randomDensePack`` and ``pack.regularHexa`` return, or
+	another packing.
+
+	:param lower, upper: corners of the box [m]; None: that of the spheres
+	:raises ValueError: it lists something else, or nothing
+	"""
+	if isinstance(spheres, Packing):
+		return spheres
+	try:
+		pairs = [(one.state.pos, one.shape.radius) if hasattr(one, "shape") else one[:2] for one in spheres]
+		centres, radii = [tuple(centre) for centre, _ in pairs], [float(radius) for _, radius in pairs]
+	except (TypeError, ValueError, AttributeError, IndexError):
+		raise ValueError(
+			f"{type(spheres).__name__} is no packing: give a Packing, a SpherePack, or a list of spheres "
+			"or of (centre, radius)"
+		) from None
+	return Packing(centres, radii, lower, upper)
 
 
 def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
@@ -172,7 +205,8 @@ def layer(width, height, rmin, rmax, seed=1, fails=5000):
 
 def read(particles, bonds=None, length_unit="m"):
 	"""Packing from a CSV file with the columns id, x, y, z, r (in any order, others are ignored) and, where given,
-	bonds from one with i, j, which are such ids.
+	bonds from one with i, j, which are such ids; or from a text file with x y z r in each line, as YADE's
+	``SpherePack.save`` and ``export.text`` write it, where the ids are 0, 1, ….
 
 	:param length_unit: of the file: "m", "cm", "mm" or "um"
 	:raises ValueError: naming file, line and what is wrong there
@@ -186,7 +220,7 @@ def read(particles, bonds=None, length_unit="m"):
 def _read(particles, bonds=None, length_unit="m"):
 	unit = _unit(length_unit)
 	rows, ids = [], {}
-	for place, record in _records(particles, ("id", "x", "y", "z", "r")):
+	for place, record in _plain_records(particles) or _records(particles, ("id", "x", "y", "z", "r")):
 		number = _number(place, "id", record["id"], int)
 		if number in ids:
 			raise ValueError(f"{place}: id {number} appears twice")
@@ -330,6 +364,26 @@ def _records(path, columns):
 			if len(fields) != len(header):
 				raise ValueError(f"{place}: {len(fields)} fields where the header has {len(header)}")
 			yield place, dict(zip(header, fields))
+
+
+def _plain_records(path):
+	"""The same of a file of lines "x y z r …", without a header but for comments; None where it is none."""
+	with open(path, encoding="utf-8") as file:
+		lines = [
+			(number, line.split())
+			for number, line in enumerate(file, 1)
+			if not line.lstrip().startswith("#")
+		]
+	lines = [(number, fields) for number, fields in lines if fields]
+	if not lines or not re.fullmatch(r"[-+.\d]\S*", lines[0][1][0]) or "," in "".join(lines[0][1]):
+		return None
+	short = [number for number, fields in lines if len(fields) < 4]
+	if short:
+		raise ValueError(f"{path}, line {short[0]}: a line of numbers must have x y z r at least")
+	return [
+		(f"{path}, line {number}", {"id": str(row), **dict(zip("xyzr", fields))})
+		for row, (number, fields) in enumerate(lines)
+	]
 
 
 def _number(place, name, text, kind):

@@ -207,17 +207,18 @@ def _spheres(sample):
 def _bonds(sample):
 	from .bonded import law
 	holding, broken, positions = law().bonds(), sample.broken, sample.positions
-	pairs = np.array(holding["ids"], dtype=int).reshape(-1, 2)
-	forces = _bond_forces(pairs)
+	held = np.array(holding["ids"], dtype=int).reshape(-1, 2)
+	mine = (sample.rows(held) >= 0).all(axis=1)
+	held, holding = held[mine], {name: np.array(values)[mine] for name, values in holding.items()}
+	broken = broken[(sample.rows(np.column_stack([broken["id1"], broken["id2"]])) >= 0).all(axis=1)]
+	forces = _bond_forces(held)
 	lost = np.full((len(broken), 2), np.nan)
-	pairs = np.vstack([pairs, np.column_stack([broken["id1"], broken["id2"]])])
-	row = np.zeros(int(sample.ids.max()) + 1, dtype=int)
-	row[sample.ids] = np.arange(len(sample))
+	rows = sample.rows(np.vstack([held, np.column_stack([broken["id1"], broken["id2"]])]))
 	arrays = {"state": np.concatenate([np.full(len(forces), HOLDS), _modes(broken)])}
 	for name, column in (("normalStress", "normal_stress"), ("shearStress", "shear_stress"), ("radius", "radius")):
 		arrays[name] = np.concatenate([holding[name], broken[column]])
 	arrays["axialForce"], arrays["shearForce"] = np.vstack([forces, lost]).T
-	return grid(positions, row[pairs], VTK_LINE, None, arrays)
+	return grid(positions, rows, VTK_LINE, None, arrays)
 
 
 def _bond_forces(pairs):

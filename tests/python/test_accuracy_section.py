@@ -39,8 +39,8 @@ def section(noise=0.001, **more):
 
 def test_both_errors_stand_beside_what_they_cost():
 	"""At 1 mm the error of 60 MPa is 5 %; Richardson's limit of order one is exact, its own bound 1.25 times the
-	distance from the finest value, 3 MPa, over the limit, 6.25 %, and the standard error of the finest mean, 0.06 %.
-	Seeds scatter by 0.1 %."""
+	distance from the finest value, 3 MPa, over the limit, 6.25 %, and the standard error of the finest mean,
+	0.06 %. Seeds scatter by 0.1 %."""
 	one, *_ = section().sentences("triangles")
 	assert one == (
 		"strength with 1 mm: 1 s of processor time a sample, error of discretisation 6.3 % (Richardson's limit "

@@ -171,7 +171,12 @@ class Cost:
 def test_what_the_accuracy_cost_is_a_section(runs, tmp_path):
 	made = report(runs, tmp_path, pictures=False, cost=Cost())
 	page = open(made.write(), encoding="utf-8").read()
-	for text in ("What this accuracy cost", "What is kept.", "rigid bonded spheres cost 3 s.", "broke &lt;down&gt;"):
+	for text in (
+		"What this accuracy cost",
+		"What is kept.",
+		"rigid bonded spheres cost 3 s.",
+		"broke &lt;down&gt;",
+	):
 		assert text in page
 	with open(tmp_path / "summary.json") as file:
 		assert json.load(file)["cost"] == {"rigid": {"points": []}}

@@ -36,7 +36,9 @@ def here(monkeypatch):
 
 	def submit(self, values, case):
 		asked.append(values)
-		return Here().submit(virtualtest.perform_and_tell, self.setup, {**self.fixed, **values}, case, self.cache)
+		return Here().submit(
+			virtualtest.perform_and_tell, self.setup, {**self.fixed, **values}, case, self.cache
+		)
 
 	monkeypatch.setattr(virtualtest.SeparateYade, "submit", submit)
 	return asked
@@ -82,7 +84,9 @@ def test_targets_are_met_and_a_second_start_uses_the_file(job, here, monkeypatch
 	} <= set(os.listdir(tmp_path))
 	assert len({origin["inputs_sha256"] for origin in origins.of_all(tmp_path).values()}) == 1
 	# every report says what the steps cost, and where the time goes
-	line = re.fullmatch(r"(\d+) steps of (\d+) triangles: .+ ns a triangle-step, \S+ s of .*", text.splitlines()[-1])
+	line = re.fullmatch(
+		r"(\d+) steps of (\d+) triangles: .+ ns a triangle-step, \S+ s of .*", text.splitlines()[-1]
+	)
 	measured, made = found["measured"], len(here)
 	each = {json.dumps(step["values"]): step["measured"]["steps"] for step in found["steps"]}
 	assert int(line[1]) == sum(each.values()) and len(each) == made

@@ -150,3 +150,41 @@ def test_bad_packings_are_refused(centres, radii, words):
 def test_unknown_unit_is_refused(tmp_path):
 	with pytest.raises(ValueError, match="length_unit = 'inch' is unknown"):
 		packing.read(tmp_path / "p.csv", length_unit="inch")
+
+
+def test_what_yade_packs_is_a_packing(tmp_path):
+	"""A SpherePack, its text file, and the list of bodies that regularHexa and randomDensePack return."""
+	from yade import pack
+	spheres = pack.SpherePack([((0, 0, 0), 0.01), ((0.02, 0, 0), 0.01), ((0, 0.03, 0), 0.02)])
+	spheres.save(str(tmp_path / "three.spheres"))
+	for found in (packing.of(spheres), packing.read(tmp_path / "three.spheres")):
+		assert found.centres == pytest.approx(np.array([[0, 0, 0], [0.02, 0, 0], [0, 0.03, 0]]))
+		assert found.radii == pytest.approx([0.01, 0.01, 0.02]) and found.lower == pytest.approx(
+			[-0.02, -0.01, -0.02]
+		)
+	bodies = pack.regularHexa(pack.inAlignedBox((0, 0, 0), (0.1, 0.1, 0.1)), radius=0.01, gap=0)
+	found = packing.of(bodies)
+	assert len(found) == len(bodies) and found.radii == pytest.approx(0.01)
+	assert found.centres[3] == pytest.approx(tuple(bodies[3].state.pos))
+	assert packing.of(found) is found
+
+
+def test_lines_of_numbers_may_have_comments_and_more_columns(tmp_path):
+	(tmp_path / "export.txt").write_text("#format x_y_z_r_matId\n0 0 0 1 0\n\n2 0 0 1 7\n")
+	found = packing.read(tmp_path / "export.txt", length_unit="mm")
+	assert found.centres.tolist() == [[0, 0, 0], [2e-3, 0, 0]] and found.radii.tolist() == [1e-3, 1e-3]
+	(tmp_path / "short.txt").write_text("0 0 0 1\n1 2 3\n")
+	with pytest.raises(ValueError, match="short.txt, line 2: .* x y z r at least"):
+		packing.read(tmp_path / "short.txt")
+
+
+@pytest.mark.parametrize("nothing", (3, [1, 2], ["a"], [((0, 0, 0), "r")]))
+def test_what_is_no_packing_is_refused(nothing):
+	with pytest.raises(ValueError, match="is no packing"):
+		packing.of(nothing)
+
+
+def test_pieces():
+	three = packing.Packing([[x, 0, 0] for x in range(5)], [0.5] * 5)
+	assert three.pieces([[3, 4], [2, 3]]).tolist() == [1, 2, 0, 0, 0]
+	assert three.pieces([[0, 1], [1, 2], [2, 3], [3, 4]]).tolist() == [0] * 5

@@ -103,7 +103,8 @@ def _label(ax, group, *others):
 		ax.set_title(key, fontsize=6, loc="left", color="#555555")
 		return
 	level = lambda line: np.mean([math.log(p.known) for p in line])
-	free = 8 if all(level(group) > level(other) - 0.05 for other in others) else -8  # points of paper, above or below
+	# points of paper, above or below
+	free = 8 if all(level(group) > level(other) - 0.05 for other in others) else -8
 	at = ax.transData.transform([(p.cpu_s, p.known) for p in group]) * 72 / ax.figure.dpi
 	side = free
 	for place, p in enumerate(group):

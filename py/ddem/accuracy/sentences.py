@@ -36,8 +36,8 @@ def grouped(points):
 
 
 def supported(point):
-	"""The error of a rung with seeds that its numbers support: no less than the standard error of their mean, nor than
-	that of its reference, which is all that is known where the rung is the reference itself."""
+	"""The error of a rung with seeds that its numbers support: no less than the standard error of their mean, nor
+	than that of its reference, which is all that is known where the rung is the reference itself."""
 	of_mean = point.scatter / math.sqrt(len(point.errors)) if point.scatter is not None else 0.0
 	error = point.reference_error if math.isnan(point.error) else point.known
 	return error if math.isnan(error) else max(error, of_mean)

@@ -45,9 +45,10 @@ class SphereSnapshot:
 	@classmethod
 	def of(cls, sample, time):
 		centres, broken = sample.positions, sample.broken
-		row = np.zeros(int(sample.ids.max()) + 1, dtype=int)
-		row[sample.ids] = np.arange(len(sample.ids))
-		first, second = centres[row[broken["id1"]]], centres[row[broken["id2"]]]
+		rows = sample.rows(np.column_stack([broken["id1"], broken["id2"]]))
+		there = (rows >= 0).all(axis=1)  # not of a sphere that was erased
+		broken, rows = broken[there], rows[there]
+		first, second = centres[rows].transpose(1, 0, 2)
 		return cls(
 			time, centres, sample.radii, sample.damage, sample.rotations[:, 2],
 			crack_traces(first, second, broken["radius"]), broken["mode"] == "tension"

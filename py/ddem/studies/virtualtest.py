@@ -162,8 +162,8 @@ def perform(setup, values, case, cache=None):
 	:param case: {"test": "compression" or "tension", "seed": whole number}
 	:param cache: folder where packings are kept for the next time
 	:returns: "ucs" or "tensile" [Pa], "young" [Pa], "strain_at_peak", "damage_at_peak" and, where the energy book
-		is kept, "energy_error"; all but tensile with ``tension_`` in front where the test is in tension, so that
-		the tests of a point do not mix
+		is kept, "energy_error"; all but tensile with ``tension_`` in front where the test is in tension,
+		so that the tests of a point do not mix
 	:raises evaluations.EvaluationError: the specimen did not fail, or the run is not sound
 	:raises ValueError: the material refuses its parameters
 	"""

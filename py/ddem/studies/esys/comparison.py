@@ -25,8 +25,8 @@ _WIDTHS = (2.6, 0.8)
 
 
 def figures(record):
-	"""What a test has given, by name with its unit; None where a figure does not exist. Times are by the clock here,
-	with recording, since that is what both programs say of themselves."""
+	"""What a test has given, by name with its unit; None where a figure does not exist. Times are by the clock
+	here, with recording, since that is what both programs say of themselves."""
 	measures = strength(record.series["strain"], record.series["stress"])
 	values = {
 		"ucs_MPa": measures.ucs / 1e6,
