@@ -253,3 +253,19 @@ def test_ladders_are_found_by_name_and_scene():
 	with pytest.raises(ValueError, match="no ladder 'beem'; there are cantilever"):
 		find("beem")
 	assert label({"size": 0.005, "values": {"equationOfState": False}}) == "5 mm, equationOfState off"
+
+
+def test_coarser_settings_foretell_the_finest():
+	"""Errors of second order, three of them; and nothing where there is no order."""
+	made = [
+		points.Point(
+			"beam", "mesh size", "beam", "deflection", "displacement", "m", f"{1e3 * h:g} mm", {}, step=h,
+			error=400 * h**2, cost={"cpu_s": h**-3 * 1e-9, "steps": 1 / h, "particles": h**-2}
+		)
+		for h in (0.008, 0.004, 0.002)
+	]
+	assert sentences.foretold(made) == (
+		"By coarser settings 2 mm would have 0.16 % in deflection for 0.12 s (order 2); it has 0.16 % for "
+		"0.12 s."
+	)
+	assert sentences.foretold(made[1:]) == "" == sentences.foretold([made[0], *made[:2]])

@@ -1,5 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """Rungs that nobody has run: power laws through those that were."""
+from dataclasses import replace
+
 import pytest
 from ddem.accuracy.points import Point
 from ddem.accuracy.prediction import Laws, predict
@@ -47,3 +49,23 @@ def test_what_has_no_order_is_refused(points, message):
 
 def test_what_is_good_enough_is_not_predicted():
 	assert predict(KNOWN, 0.5) is None
+
+
+def test_time_is_steps_times_the_time_of_a_step():
+	"""Particles h⁻², steps h⁻¹; a step takes 1 µs and 20 ns a particle, which coarse samples hardly show."""
+	points = [
+		replace(
+			point(h, 3 * h**2, h**-1 * (1e-6 + 20e-9 * h**-2)),
+			cost={
+				"cpu_s": h**-1 * (1e-6 + 20e-9 * h**-2),
+				"memory_MB": 1.0,
+				"steps": h**-1,
+				"particles": h**-2,
+			}
+		)
+		for h in (0.4, 0.2)
+	]
+	assert Laws(points).at(0.01).cpu_s == pytest.approx(100 * (1e-6 + 20e-9 * 1e4))
+	# a count that an irregular mesh throws off a little is taken for the whole power
+	points[0].cost["particles"] *= 1.15
+	assert Laws(points).at(0.01).cpu_s == pytest.approx(100 * (1e-6 + 20e-9 * 1e4), rel=0.3)

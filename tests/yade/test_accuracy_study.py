@@ -28,8 +28,8 @@ class Known:
 		return {
 			"value:deflection": 3 * (1 - error), "reference:deflection": 3.0, "error:deflection": error,
 			"cpu_s": seconds,
-			"wall_s": seconds, "ns_per_particle_step": 20.0, "memory_MB": 5.0, "steps": 1000,
-			"particles": 100,
+			"wall_s": seconds, "ns_per_particle_step": 1.0, "memory_MB": 5.0, "steps": 1 / size,
+			"particles": size**-2,
 			"unknowns": 300, "particle_steps": 1e5, "dt_s": 1e-7, "threads": 1
 		}
 
@@ -86,7 +86,7 @@ def test_a_rung_that_would_break_the_budget_is_not_started(tmp_path):
 		found[-1].failed.startswith("not run: it would take about 1 s of a budget of which ")
 		and found[-1].skipped
 	)
-	assert told[0] == "beam: 8 mm: 0.00195 core-seconds, 100 particles, 20 ns a particle-step"
+	assert told[0] == "beam: 8 mm: 0.00195 core-seconds, 15625 particles, 1 ns a particle-step"
 
 
 def test_cheap_rungs_of_all_ladders_come_first(tmp_path):

@@ -58,7 +58,11 @@ class Estimate:
 					f"expected error of {found.quantity}: {sentences.per_cent(found.error)}, "
 					f"order {found.order:.2g}"
 				)
-				+ ("" if found.settled else ", which has not settled: within a factor of two or three")
+				+ (
+					", which has not settled: within a factor of two or three"
+					if found.settled is False
+					else ""
+				)
 			)
 		for found in self.needed:
 			lines.append(
@@ -153,7 +157,8 @@ def _errors(target, ladder, rung, budget):
 			f"{ladders.label(rung)}, and there are {len(coarser)}"
 		)
 	work = study.Study(
-		[dataclasses.replace(ladder, rungs=coarser)], scene_cost.cache("rungs"), threads=O.numThreads,
+		[dataclasses.replace(ladder, rungs=coarser, usual=coarser[-1])], scene_cost.cache("rungs"),
+		threads=O.numThreads,
 		budget=budget
 	)
 	points, found, needed = work.run(), [], []

@@ -18,11 +18,16 @@ class Prediction:
 	cpu_s: float  # [s]
 	memory_MB: float
 	order: float  # observed, of the error in the step [-]
-	settled: bool  # whether three rungs show the same order, within a fourth
+	settled: bool  # whether three rungs show the same order, within a fourth; None where there are but two
 
 
 class Laws:
-	"""Power laws of error, processor time and memory in what a ladder refines, through the finest two rungs.
+	"""Laws of error, processor time and memory in what a ladder refines, through the finest two rungs.
+
+	Errors and memory follow a power law with the exponent observed. Processor time is steps times the time of
+	a step: numbers of steps and particles grow with whole powers, that of steps at least with the first where
+	particles do, since the stable step falls with the smallest one; a step takes a time of its own and a share for
+	each particle, which small samples do not show in a power law.
 
 	:param points: of one ladder and one quantity
 	:raises ValueError: fewer than two of them have an error, or it does not fall where the cost grows
@@ -45,9 +50,12 @@ class Laws:
 		self.best = good[0]
 		self.order = self._exponent(good[:2], lambda p: p.error)
 		self._growth = self._exponent(good[:2], lambda p: p.cpu_s)
+		self._second = good[1]
 		self._bytes = self._exponent(good[:2], lambda p: p.cost.get("memory_MB", math.nan))
-		before = self._exponent(good[1:3], lambda p: p.error) if len(good) > 2 else math.nan
-		self.settled = abs(before - self.order) <= 0.25 * self.order
+		self.settled = None
+		if len(good) > 2:
+			before = self._exponent(good[1:3], lambda p: p.error)
+			self.settled = abs(before - self.order) <= 0.25 * self.order
 		if not (self.order > _LOWEST_ORDER and self._growth < 0):
 			raise ValueError(f"{self.quantity}: the errors of its rungs do not fall with what they cost")
 
@@ -55,12 +63,31 @@ class Laws:
 	def _exponent(points, value):
 		return float(convergence.power_law([p.step for p in points], [value(p) for p in points])[1])
 
+	def _seconds(self, finer):
+		"""Processor time at so many times the finest step [s]."""
+		fine, coarse = self.best.cost, self._second.cost
+		if not all(one.get(name, 0) > 0 for one in (fine, coarse) for name in ("steps", "particles")):
+			return self.best.cpu_s * finer**self._growth
+		pair = (self.best, self._second)
+		of_particles, of_steps = (
+			round(self._exponent(pair, lambda p, name=name: p.cost[name]))
+			for name in ("particles", "steps")
+		)
+		if of_particles < 0:
+			of_steps = min(of_steps, -1)
+		each, before = self.best.cpu_s / fine["steps"], self._second.cpu_s / coarse["steps"]  # of a step
+		more = fine["particles"] - coarse["particles"]
+		share = (each - before) / more if more > 0.01 * fine["particles"] else 0.0
+		share = min(max(share, 0.0), each / fine["particles"])
+		particles = fine["particles"] * finer**of_particles
+		return fine["steps"] * finer**of_steps * (each + share * (particles - fine["particles"]))
+
 	def at(self, step):
 		"""The :class:`Prediction` for a step."""
 		finer = step / self.best.step
 		memory = self.best.cost.get("memory_MB", math.nan)
 		return Prediction(
-			self.quantity, step, self.best.error * finer**self.order, self.best.cpu_s * finer**self._growth,
+			self.quantity, step, self.best.error * finer**self.order, self._seconds(finer),
 			memory * finer**self._bytes if math.isfinite(self._bytes) else memory, self.order, self.settled
 		)
 

@@ -3,7 +3,7 @@
 import math
 from statistics import median
 
-from . import convergence, recommendation
+from . import convergence, prediction, recommendation
 from .ladders import COMPARED, REFINED, label
 
 _TARGETS = (0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 1e-4, 1e-5)
@@ -301,6 +301,25 @@ def _beside(points, sized):
 	)
 
 
+def foretold(points):
+	"""How well the coarser settings of a ladder foretell its finest one, for the points of one quantity: error and
+	processor time that their laws give it, beside those it has. Empty where they show no order, or its reference is
+	no better known."""
+	good = sorted((p for p in points if not p.failed and p.step is not None), key=lambda p: p.step)
+	if len(good) < 3 or not good[0].error > max(good[0].reference_error, 0):
+		return ""
+	finest = good[0]
+	try:
+		said = prediction.Laws(good[1:]).at(finest.step)
+	except ValueError:
+		return ""
+	return (
+		f"By coarser settings {finest.rung} would have {per_cent(said.error)} in {finest.quantity} for "
+		f"{seconds(said.cpu_s)} (order {said.order:.2g}{', not settled' if said.settled is False else ''}); "
+		f"it has {per_cent(finest.error)} for {seconds(finest.cpu_s)}."
+	)
+
+
 def never_worth(points):
 	"""Rungs that cost more than another of their ladder that is at least as close, in every quantity; those against
 	which others are compared are none of them."""
@@ -369,6 +388,8 @@ def all_of(points):
 			told.append(mesh_dependence(group))
 		elif kind in REFINED or kind == "time-step fraction":
 			told.append(prices(group))
+		if kind in REFINED and of not in ("crack energy", "energy book"):
+			told.append(foretold(group))
 		if kind in REFINED and of == "UCS":
 			told.append(hidden(group))
 		elif kind == "loading rate" and of == "UCS":
