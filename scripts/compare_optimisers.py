@@ -502,6 +502,7 @@ def read_options():
 	return options
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	versions = {scipy.__name__: scipy.__version__}

@@ -17,6 +17,7 @@ from yade.ddem.studies import commandline
 ELASTIC = {"young": 30e9, "poisson": 0.2, "density": 2400}
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	print(HEAD)

@@ -35,6 +35,11 @@ def says(found, by="null"):
 	return f"echo '{answer}' > $answer"
 
 
+def physics(measured):
+	"""What was measured, without what it cost."""
+	return {name: measured[name] for name in ("young", "ucs", "strain_at_peak", "damage_at_peak", "energy_error")}
+
+
 def gone(pid):
 	return not os.path.exists(f"/proc/{pid}")
 
@@ -70,7 +75,7 @@ def test_evaluations_of_real_yades_at_the_same_time_are_those_of_one_after_anoth
 	for name, work in (("two", Workers(jobs=2)), ("one", None)):
 		evaluate = SeparateYade(BLOCK, {"young": 60e9}, workers=work)
 		with Bench(evaluate, [COMPRESSION], evaluate.settings(), tmp_path / name) as bench:
-			found[name] = [(point.measured, point.error) for point in bench.measure(points)]
+			found[name] = [(physics(point.measured), point.error) for point in bench.measure(points)]
 		if work:
 			work.close()
 	assert found["two"] == found["one"]
@@ -196,7 +201,7 @@ def test_a_cluster_gives_what_this_machine_gives(cluster):
 			.result()
 		)
 	here = SeparateYade(BLOCK, {"young": 60e9}).submit({"strength": 120e6}, COMPRESSION).result()
-	assert {**there, "about": 0, "effects": 0} == {**here, "about": 0, "effects": 0}
+	assert physics(there) == physics(here)
 
 
 def test_stop_ends_only_what_is_one_s_own_on_a_cluster(cluster, tmp_path):
