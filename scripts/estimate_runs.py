@@ -1,5 +1,5 @@
 # GPL v2 or later, see LICENSE.
-"""What ddem.estimate says before a run, beside what the run then takes: ten scenes of both models.
+"""What ddem.estimate says before a run, beside what the run then takes: eleven scenes of both models.
 
 Run:      scripts/ddem run scripts/estimate_runs.py                (two minutes)
           scripts/ddem run scripts/estimate_runs.py --scene block bonds
