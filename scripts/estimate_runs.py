@@ -6,7 +6,8 @@ Run:      scripts/ddem run scripts/estimate_runs.py                (two minutes)
 Writes:   a table here, and into out/estimate_runs: estimates.json.
 Expect:   steps exactly, but where a time stepper adds some (crushed: 7 %); memory within 5 %, in a process that made
           other scenes before up to 8 %; processor time within 20 % of the estimate, or of the range where what was at
-          rest is reached by the load, softens or breaks. On a shared machine 9 of 11 scenes were, the others within 30 %.
+          rest is reached by the load, softens or breaks. On a shared machine 9 of 11 scenes were, the others within
+          30 %.
 """
 import os
 import sys
