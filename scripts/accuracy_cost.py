@@ -23,6 +23,7 @@ import sys
 from yade.ddem import meter
 from yade.ddem.accuracy import ladders, page, sentences, study
 from yade.ddem.studies import commandline
+from yade.ddem.studies.evaluations import Lost
 
 
 def main():
@@ -35,7 +36,10 @@ def main():
 			options.chosen, options.out, threads=options.threads, workers=workers, budget=options.budget,
 			report=lambda text: print(text, flush=True)
 		)
-		points = work.run(options.target)
+		try:
+			points = work.run(options.target)
+		except Lost as error:
+			sys.exit(f"accuracy_cost.py: {error}; what has been run is kept, and the same command goes on")
 	told = sentences.all_of(points)
 	print()
 	print(page.table(points))

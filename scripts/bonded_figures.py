@@ -40,6 +40,7 @@ from yade.ddem.studies import commandline
 from yade.ddem.studies.bonded_study import Group, Record
 from yade.ddem.studies.campaign import Campaign, Case, Failed
 from yade.ddem.studies.commandline import count, require_writable, share
+from yade.ddem.studies.evaluations import Lost
 
 SCRIPTS = os.path.dirname(os.path.abspath(sys.argv[0]))
 # of ESyS-Particle, in a box of 10 x 20 x 10 mm
@@ -71,6 +72,8 @@ def main():
 	except KeyboardInterrupt:
 		print("\nInterrupted; the same command goes on from what is finished.")
 		sys.exit(INTERRUPTED)
+	except Lost as error:
+		sys.exit(f"bonded_figures.py: {error}; what is finished is kept, and the same command goes on")
 	except Failed as error:
 		sys.exit(f"bonded_figures.py: {error}\nWhat is finished is kept; the same command tries these again.")
 	for group, members in groups:

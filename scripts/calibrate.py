@@ -44,7 +44,7 @@ from yade.ddem.studies import commandline, virtualtest
 from yade.ddem.studies.calibration import Calibration, Target
 from yade.ddem.studies.calibration_quantities import MEASURES, TUNABLES, parameters, starts, usual
 from yade.ddem.studies.commandline import count, not_negative, positive, require_writable, seed, share
-from yade.ddem.studies.evaluations import Bench
+from yade.ddem.studies.evaluations import Bench, Lost
 
 #: attributes of the material that are stated, with the values of its class where nothing else is said
 STATED = {
@@ -85,6 +85,10 @@ def main():
 		except KeyboardInterrupt:
 			print(f"\nInterrupted after {bench.ran} evaluations; the same command goes on from there.")
 			sys.exit(INTERRUPTED)
+		except Lost as error:
+			sys.exit(
+				f"calibrate.py: {error}; {bench.ran} evaluations are kept, and the same command goes on"
+			)
 		report = write_report(options, setup, fixed, outcome, bench)
 	sys.exit(0 if report.outcome.reached else 1)
 

@@ -16,17 +16,6 @@ DDEM_PLUGIN((BondedInteractionLoop))
 
 namespace {
 
-	constexpr long lookInterval = 1000; ///< steps between looks at the time step
-
-	const TimeStepper* activeTimeStepper(const Scene& scene)
-	{
-		for (const auto& engine : scene.engines)
-			if (const auto* stepper = dynamic_cast<const TimeStepper*>(engine.get());
-			    stepper && stepper->active)
-				return stepper;
-		return nullptr;
-	}
-
 	/// Engines that look at no bond.
 	bool neverLooksAtBonds(const Engine& engine)
 	{
@@ -66,36 +55,36 @@ void BondedInteractionLoop::action()
 			locateHeld();
 		}
 	}
-	if (bondLaw) requireStableStep();
+	if (bondLaw) guard.check(*scene, known >= 0);
 	if (known < 0) {
 		InteractionLoop::action();
+		throwFailure();
 		return;
 	}
 	actOnOthers();
+	throwFailure();
 	const std::lock_guard<std::mutex> lock(busy);
 	advance(*bondLaw);
 }
 
-/// Looks where O.dt has grown or bonds are new, and now and then, since contacts form.
-void BondedInteractionLoop::requireStableStep()
+void BondedInteractionLoop::stopAfterStep(const std::string& text)
 {
-	if (scene->dt <= stable && scene->iter < nextLook) return;
-	const BondedStableStep bound = Law::criticalTimeStepOf(*scene);
-	if (scene->dt <= bound.step) {
-		stable   = scene->dt;
-		nextLook = scene->iter + lookInterval;
-		return;
-	}
-	stable = 0; // a second try is checked, too
-	std::ostringstream text;
-	text << "O.dt = " << scene->dt << " s is above the critical time step " << bound.step
-	     << " s, set by bodies #" << bound.id1 << " and #" << bound.id2 << " in step " << scene->iter
-	     << "; the simulation would blow up: ";
-	if (const auto* stepper = activeTimeStepper(*scene))
-		text << stepper->getClassName()
-		     << " sets O.dt: lower its timestepSafetyCoefficient, or leave it out and ";
-	text << "set O.dt = ddem.bonded.time_step(0.8)";
-	throw std::runtime_error(text.str());
+	const std::lock_guard<std::mutex> lock(failing);
+	if (stopping.empty()) stopping = text;
+}
+
+void BondedInteractionLoop::throwFailure()
+{
+	const std::lock_guard<std::mutex> lock(failing);
+	if (!stopping.empty()) throw std::runtime_error(std::exchange(stopping, {}));
+}
+
+void stopAfterStep(Scene& scene, const std::string& text)
+{
+	for (const auto& engine : scene.engines)
+		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) return loop->stopAfterStep(text);
+	std::cerr << "ERROR: " << text << std::endl; // an InteractionLoop ends the program where a functor throws
+	Omega::instance().pause();
 }
 
 bool BondedInteractionLoop::locateHeld()
@@ -182,7 +171,10 @@ bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 		        "BondedInteractionLoop has no Ip2 functor for " + body1->material->getClassName() + " and "
 		        + body2->material->getClassName());
 	functors.phys->go(body1->material, body2->material, I);
-	if (!wasReal) I->iterMadeReal = scene->iter;
+	if (!wasReal) {
+		I->iterMadeReal = scene->iter;
+		guard.see(*scene, *I);
+	}
 	if (!functors.constLaw) functors.constLaw = lawDispatcher->getFunctor2D(I->geom, I->phys, swap);
 	if (!functors.constLaw)
 		throw std::runtime_error(
@@ -203,7 +195,6 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 	std::sort(
 	        held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
 
-	stable = 0;
 	system.clear();
 	particles.clear();
 	overloaded.clear();

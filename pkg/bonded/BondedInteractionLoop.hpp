@@ -2,6 +2,7 @@
 // An InteractionLoop that computes all bonds together.
 #pragma once
 
+#include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 
 #include <pkg/ddem/Onlookers.hpp>
@@ -24,6 +25,8 @@ public:
 	/// Empty where bonds are computed one by one.
 	std::map<std::pair<int, int>, BondNow> bondsNow() const;
 	void preSave(BondedInteractionLoop&) { expose(); }
+	/// Throws a runtime_error once all functors of this step have returned, as none may throw among them.
+	void stopAfterStep(const std::string& text);
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC(BondedInteractionLoop, InteractionLoop,
@@ -57,7 +60,7 @@ private:
 
 	Law* law() const;
 	bool oneByOne() const;
-	void requireStableStep();
+	void throwFailure();
 	bool locateHeld();
 	void actOnOthers();
 	bool act(const shared_ptr<Interaction>& I);
@@ -80,13 +83,18 @@ private:
 	long                                  known  = -1; ///< BondedPhys::bondsMade when they were collected
 	const Scene*                          knownScene = nullptr;
 	bool                                  exposed = true;
-	Real                                  stable   = 0; ///< time step that was last found stable [s]
-	long                                  nextLook = 0; ///< step of the next look at it
+	BondedStepGuard                       guard;
+	std::mutex                            failing;  ///< held for the text
+	std::string                           stopping; ///< what stops the run after this step
 	SingleProcess                         process;
 	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written
 	                                                       ///< back: Python may ask at any time
 	Showings                              showings;
 };
 REGISTER_SERIALIZABLE(BondedInteractionLoop);
+
+/// Stops the run from within a functor: with an error where the scene has a BondedInteractionLoop; else it says so and
+/// pauses.
+void stopAfterStep(Scene& scene, const std::string& text);
 
 } // namespace yade

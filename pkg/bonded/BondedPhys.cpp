@@ -31,16 +31,8 @@ shared_ptr<BondedPhys> BondedPhys::contact(const BondedMat& a, const BondedMat& 
 
 Real BondedPhys::reachOf(const Interaction& I)
 {
-	if (I.geom->getClassName() == "ScGridCoGeom") // forces on a grid's connection belong to its nodes
-		throw std::runtime_error(
-		        "bodies #" + std::to_string(I.getId1()) + " and #" + std::to_string(I.getId2())
-		        + ": BondedMat has no contact with grid connections and PFacets; give these bodies another "
-		          "mask, or use Facet");
-	const auto& geom     = static_cast<const ScGeom&>(*I.geom);
-	const auto  isSphere = [](Body::id_t id) {
-                return dynamic_cast<const Sphere*>(Body::byId(id)->shape.get()) != nullptr;
-	};
-	const bool sphere1 = isSphere(I.getId1()), sphere2 = isSphere(I.getId2());
+	const auto& geom    = static_cast<const ScGeom&>(*I.geom);
+	const bool  sphere1 = isSphere(*Body::byId(I.getId1())), sphere2 = isSphere(*Body::byId(I.getId2()));
 	if (sphere1 == sphere2) return geom.radius1 + geom.radius2;
 	return 2 * (sphere1 ? geom.radius1 : geom.radius2);
 }

@@ -8,6 +8,13 @@
 
 namespace yade {
 
+/// Whether its shape is a sphere or a kind of it.
+inline bool isSphere(const Body& body)
+{
+	return body.shape->getClassIndex() == Sphere::getClassIndexStatic()
+	        || dynamic_cast<const Sphere*>(body.shape.get());
+}
+
 class BondedPhys : public RotStiffFrictPhys {
 public:
 	virtual ~BondedPhys() = default;

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
 // Walls that repel or hold bonded particles elastically: material, physics and the functors between them.
+#include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/ElasticWall.hpp>
 #include <pkg/bonded/kernel/BondWall.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
@@ -39,14 +40,14 @@ namespace {
 	}
 
 	/// A sphere that a wall has left behind altogether is no contact: walls have met, or a sphere was too fast.
-	[[noreturn]] void stopBehindWall(const Scene& scene, const Interaction& I, Real depth)
+	void stopBehindWall(Scene& scene, const Interaction& I, Real depth)
 	{
 		std::ostringstream text;
 		text << "sphere #" << I.getId2() << " is " << depth << " m behind the wall #" << I.getId1()
 		     << " in step " << scene.iter << ", t = " << scene.time
 		     << " s, more than its radius: the platens have met, or it came too fast for the time step; "
 		        "end the run earlier, or load slower";
-		throw std::runtime_error(text.str());
+		stopAfterStep(scene, text.str());
 	}
 
 	[[noreturn]] void refuseWall(int wall, const std::string& why)
@@ -116,6 +117,7 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 	const auto&    geom   = static_cast<const ScGeom&>(*iGeom);
 	auto&          phys   = static_cast<ElasticWallPhys&>(*iPhys);
 	const Body&    wall   = *Body::byId(I->getId1(), scene);
+	const bool     isWall = wall.shape->getClassIndex() == Wall::getClassIndexStatic();
 	const Vector3r branch = Body::byId(I->getId2(), scene)->state->pos - wall.state->pos;
 	Real           stored = 0;
 	if (phys.bonded) {
@@ -128,7 +130,6 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 		stored                      = -0.5 * force.dot(displacement);
 	} else {
 		// Behind a wall the distance is negative; a box or a facet has no behind.
-		const bool isWall = wall.shape->getClassIndex() == Wall::getClassIndexStatic();
 		const Real distance = isWall ? geom.normal.dot(branch) : geom.radius2 - geom.penetrationDepth,
 		           force    = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
@@ -139,7 +140,7 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 	const Vector3r force = phys.normalForce + phys.shearForce;
 	scene->forces.addForce(I->getId1(), -force);
 	scene->forces.addForce(I->getId2(), force);
-	if (wall.shape->getClassIndex() != Wall::getClassIndexStatic()) // a wall does not turn
+	if (!isWall) // which does not turn
 		scene->forces.addTorque(I->getId1(), (geom.contactPoint - wall.state->pos).cross(-force));
 	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::WallElastic, stored);
 	return true;

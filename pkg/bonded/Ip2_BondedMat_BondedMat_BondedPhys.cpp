@@ -1,6 +1,7 @@
 // GPL v2 or later, see LICENSE.
 // From two materials to a contact or a bond.
 #include <pkg/bonded/Ip2_BondedMat_BondedMat_BondedPhys.hpp>
+#include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
 #include <sstream>
@@ -10,6 +11,17 @@ namespace yade {
 DDEM_PLUGIN((Ip2_BondedMat_BondedMat_BondedPhys)(Ip2_FrictMat_BondedMat_BondedPhys))
 
 namespace {
+
+	/// Forces on a grid's connection belong to its nodes, which this law does not know.
+	void refuseGrid(Scene& scene, const Interaction& I)
+	{
+		if (I.geom->getClassName() != "ScGridCoGeom") return;
+		stopAfterStep(
+		        scene,
+		        "bodies #" + std::to_string(I.getId1()) + " and #" + std::to_string(I.getId2())
+		                + ": BondedMat has no contact with grid connections and PFacets; give these bodies "
+		                  "another mask, or use Facet");
+	}
 
 	struct Particle {
 		Body*            body;
@@ -74,6 +86,7 @@ void Ip2_BondedMat_BondedMat_BondedPhys::go(
         const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
+	refuseGrid(*scene, *interaction);
 	interaction->phys = BondedPhys::contact(
 	        static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2),
 	        BondedPhys::reachOf(*interaction));
@@ -84,6 +97,7 @@ void Ip2_FrictMat_BondedMat_BondedPhys::go(
         const shared_ptr<Interaction>& interaction)
 {
 	if (interaction->phys) return;
+	refuseGrid(*scene, *interaction);
 	const auto* bonded = dynamic_cast<const BondedMat*>(material1.get()); // they come in either order
 	const auto& other  = static_cast<const FrictMat&>(bonded ? *material2 : *material1);
 	if (!bonded) bonded = static_cast<const BondedMat*>(material2.get());

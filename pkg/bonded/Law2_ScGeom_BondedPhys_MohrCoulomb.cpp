@@ -1,10 +1,8 @@
 // GPL v2 or later, see LICENSE.
 // The law of bonded particles: elastic bond, Mohr-Coulomb failure, frictional contact.
 #include <pkg/bonded/BondedInteractionLoop.hpp>
-#include <pkg/bonded/ElasticWall.hpp>
+#include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
-#include <pkg/bonded/kernel/BondStableStep.hpp>
-#include <pkg/bonded/kernel/BondWall.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 #include <pkg/bonded/kernel/EsysContact.hpp>
 
@@ -110,16 +108,11 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::touching(const Interaction& I) const
 {
 	const auto& geom = static_cast<const ScGeom&>(*I.geom);
-	if (!isSphere(I.getId1()) || !isSphere(I.getId2())) return geom.penetrationDepth > 0;
+	if (!isSphere(*Body::byId(I.getId1(), scene)) || !isSphere(*Body::byId(I.getId2(), scene)))
+		return geom.penetrationDepth > 0;
 	// A pair that was bonded with an overlap may have a shorter reach than its radii: it stays for as long as the
 	// spheres touch, or a new contact would know nothing of that.
 	return branchOf(I).norm() < geom.radius1 + geom.radius2;
-}
-
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::isSphere(Body::id_t id) const
-{
-	const Shape& shape = *Body::byId(id, scene)->shape;
-	return shape.getClassIndex() == Sphere::getClassIndexStatic() || dynamic_cast<const Sphere*>(&shape);
 }
 
 ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Interaction& I)
@@ -127,7 +120,8 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Inte
 	const auto&    geom   = static_cast<const ScGeom&>(*I.geom);
 	auto&          phys   = static_cast<BondedPhys&>(*I.phys);
 	const State &  state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
-	const bool     sphere1 = isSphere(I.getId1()), sphere2 = isSphere(I.getId2()), spheres = sphere1 && sphere2;
+	const bool     sphere1 = isSphere(*Body::byId(I.getId1(), scene)),
+	           sphere2 = isSphere(*Body::byId(I.getId2(), scene)), spheres = sphere1 && sphere2;
 	const Real     share = spheres ? phys.contactReach / (geom.radius1 + geom.radius2) : 1,
 	               radius1 = sphere1 ? share * geom.radius1 : 0, radius2 = sphere2 ? share * geom.radius2 : 0;
 	const Vector3r branch   = branchOf(I);
@@ -148,7 +142,9 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Inte
 	               ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
 	               : ddem::contactLoads(
 	                       { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
-	                       phys.contactDamping(state1.mass, state2.mass));
+	                       phys.contactDamping(
+	                               moverOf(*scene, I.getId1()).state->mass,
+	                               moverOf(*scene, I.getId2()).state->mass));
 	if (!sphere1) loads.moment1 = arm1.cross(loads.force);
 	if (!sphere2) loads.moment2 = -arm2.cross(loads.force);
 	phys.contactNormal  = memory.normal;
@@ -299,82 +295,9 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 	return result;
 }
 
-BondedStableStep Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStepOf(const Scene& scene)
-{
-	// bodies that cannot move stay -1
-	std::vector<int>                                 place(scene.bodies->size(), -1);
-	std::vector<ddem::ParticleMass>                  particles;
-	std::vector<ddem::PairSpring>                    springs, dampers;
-	std::vector<std::pair<int, int>>                 bodies; ///< of every spring
-	std::vector<std::pair<const Wall*, const Body*>> walls;
-	for (const auto& body : *scene.bodies) {
-		if (!body) continue;
-		if (const auto* wall = dynamic_cast<const Wall*>(body->shape.get()))
-			walls.emplace_back(wall, body.get());
-		if (body->state->blockedDOFs == State::DOF_ALL || !(body->state->mass > 0)) continue;
-		place[size_t(body->id)] = int(particles.size());
-		particles.push_back({ body->state->mass, body->state->inertia.minCoeff() });
-	}
-	const auto bodyOf = [&scene](int id) -> const Body& { return *(*scene.bodies)[id]; };
-	const auto add    = [&](int id1, int id2, const ddem::PairSpring& spring) {
-                springs.push_back(spring);
-                bodies.emplace_back(id1, id2);
-	};
-	for (const auto& I : *scene.interactions) {
-		if (const auto* held = dynamic_cast<const ElasticWallPhys*>(I->phys.get()); held && held->bonded)
-			add(I->getId1(), I->getId2(),
-			    { place[size_t(I->getId2())], -1, held->kn, held->ks, 0, 0, 0, 0 });
-		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
-		if (!phys || !I->geom) continue;
-		const auto& geom  = static_cast<const ScGeom&>(*I->geom);
-		const Body &body1 = bodyOf(I->getId1()), &body2 = bodyOf(I->getId2());
-		const Real  share = phys->contactReach / (geom.radius1 + geom.radius2);
-		const auto  arm   = [&](const Body& body, Real radius) {
-                        return dynamic_cast<const Sphere*>(body.shape.get())
-                                ? math::min(Real(1), share) * radius
-                                : (geom.contactPoint - body.state->pos).norm();
-		};
-		ddem::PairSpring spring {
-			place[size_t(I->getId1())], place[size_t(I->getId2())], phys->kn, phys->ks, 0, 0,
-			arm(body1, geom.radius1),   arm(body2, geom.radius2)
-		};
-		// of the contact that is there or that a broken bond leaves
-		if (phys->normalDamping > 0 || phys->shearDamping > 0) {
-			const auto damping = phys->contactDamping(body1.state->mass, body2.state->mass);
-			dampers.push_back({ spring.first, spring.second, damping.normal, damping.shear, 0, 0,
-			                    spring.arm1, spring.arm2 });
-		}
-		if (phys->bonded) {
-			spring.bending = phys->kb;
-			spring.torsion = phys->kt;
-			spring.arm1 = spring.arm2 = phys->bondLength / 2;
-		}
-		add(I->getId1(), I->getId2(), spring);
-	}
-	for (const auto& [wall, wallBody] : walls) { // also those particles that are about to touch
-		const auto* material = dynamic_cast<const ElasticWallMat*>(wallBody->material.get());
-		if (!material) continue;
-		for (const auto& body : *scene.bodies) {
-			const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
-			if (!sphere || !dynamic_cast<const BondedMat*>(body->material.get())) continue;
-			if (math::abs(body->state->pos[wall->axis] - wallBody->state->pos[wall->axis])
-			    > 2 * sphere->radius)
-				continue;
-			add(wallBody->id, body->id,
-			    { place[size_t(body->id)], -1, ddem::wallSpring(sphere->radius, material->stiffness), 0, 0,
-			      0, 0, 0 });
-		}
-	}
-	const ddem::PairSpring* ruling = nullptr;
-	const Real              undamped = ddem::stableStep(particles, springs, &ruling);
-	BondedStableStep found { ddem::dampedStableStep(undamped, ddem::stableStep(particles, dampers)), -1, -1 };
-	if (ruling) std::tie(found.id1, found.id2) = bodies[size_t(ruling - springs.data())];
-	return found;
-}
-
 Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
 {
-	return criticalTimeStepOf(*Omega::instance().getScene()).step;
+	return bondedStableStep(*Omega::instance().getScene()).step;
 }
 
 } // namespace yade

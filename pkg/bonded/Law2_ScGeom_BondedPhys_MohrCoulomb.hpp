@@ -12,12 +12,6 @@
 
 namespace yade {
 
-/// Bound on the time step [s], and the bodies of the pair that sets it; -1 where there is none.
-struct BondedStableStep {
-	Real       step;
-	Body::id_t id1, id2;
-};
-
 class Law2_ScGeom_BondedPhys_MohrCoulomb : public LawFunctor {
 public:
 	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
@@ -43,9 +37,8 @@ public:
 	boost::python::dict largestStresses() const;
 	/// Bytes of YADE's objects for a bond.
 	static long bytesPerBond() { return long(sizeof(Interaction) + sizeof(ScGeom) + sizeof(BondedPhys)); }
-	/// Bound on the time step of the current scene [s], see ddem::stableStep.
+	/// Bound on the time step of the current scene [s], see bondedStableStep.
 	static Real criticalTimeStep();
-	static BondedStableStep criticalTimeStepOf(const Scene& scene);
 
 	FUNCTOR2D(ScGeom, BondedPhys);
 	// clang-format off
@@ -76,9 +69,9 @@ public:
 		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast "
 		"as one by one in an :yref:`InteractionLoop`.\n\n"
 		"**Geometry.** Contacts take every :yref:`ScGeom`: spheres, clump members, :yref:`Wall`, :yref:`Box`, "
-		":yref:`Facet`, polyhedra. What is no sphere has its springs by the sphere's image, and slips where it "
-		"is touched. :yref:`ScGeom6D` works as well, its relative rotations are not used; "
-		":yref:`ScGridCoGeom` is refused.\n\n"
+		":yref:`Facet`. What is no sphere has its springs by the sphere's image, and slips where it is "
+		"touched. A sphere on the edge that two facets share touches both, as in all of YADE. :yref:`ScGeom6D` "
+		"works as well, its relative rotations are not used; :yref:`ScGridCoGeom` is refused.\n\n"
 		"**Saving.** Bonds and the list of broken bonds are saved with the scene. "
 		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it "
 		"refuses to be made, loaded or run.",
@@ -106,11 +99,12 @@ public:
 			"arrays of a :yref:`BondedInteractionLoop`.")
 		.staticmethod("bytesPerBond")
 		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,
-			"Rigorous bound on the time step [s] for the bonds and contacts of the current scene and for "
-			"its elastic walls: :math:`2/\\omega` of the worst pair, each particle's mass shared out "
-			"between its springs; about a tenth below the exact value. That holds for small overlaps and "
-			"the consistent convention; the stiffness of the other one is not symmetric. Infinite without "
-			"springs. Contacts that form later may lower it: use 0.8 of it where much breaks.")
+			"Rigorous bound on the time step [s] for the bonds and contacts of the current scene, those of "
+			"other laws with two springs included, and for its elastic walls: :math:`2/\\omega` of the "
+			"worst pair, each particle's mass shared out between its springs; about a tenth below the "
+			"exact value. That holds for small overlaps and the consistent convention; the stiffness of "
+			"the other one is not symmetric. Infinite without springs. Contacts that form later may lower "
+			"it: use 0.8 of it where much breaks.")
 		.staticmethod("criticalTimeStep")
 	);
 	// clang-format on
@@ -121,7 +115,6 @@ private:
 	/// Loads of a contact, of any geometry, and what it remembers of them.
 	ddem::ContactLoads contactLoadsOf(const Interaction& I);
 	bool touching(const Interaction& I) const;
-	bool isSphere(Body::id_t id) const;
 	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);

@@ -1,6 +1,7 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/Onlookers.hpp>
 
+#include <core/TimeStepper.hpp>
 #include <pkg/common/PyRunner.hpp>
 
 #include <typeinfo>
@@ -53,6 +54,10 @@ Onlooker onlooker(
 		if (e->dead || neverLooks(*e)) continue;
 		const auto* periodic = dynamic_cast<const PeriodicEngine*>(e.get());
 		if (periodic && !isDue(*periodic, before ? next : scene.iter, before ? then : scene.time, clockSlack))
+			continue;
+		const auto* stepper = dynamic_cast<const TimeStepper*>(e.get()); // as TimeStepper::isActivated decides
+		if (stepper
+		    && !(stepper->active && (before ? next : scene.iter) % stepper->timeStepUpdateInterval == 0))
 			continue;
 		if (typeid(*e) != typeid(PyRunner)) return Onlooker::Anybody;
 		python = true;

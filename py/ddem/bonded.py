@@ -120,7 +120,7 @@ def _warn_of_pieces(packing, pairs):
 			f"a sphere, are in {len(sizes)} pieces: {sizes[0]} in the largest, {loose} loose; a larger "
 			"gap= or a wider range of radii joins them"
 		),
-		stacklevel=3,
+		stacklevel=4,
 	)
 
 

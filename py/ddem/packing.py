@@ -206,7 +206,7 @@ def layer(width, height, rmin, rmax, seed=1, fails=5000):
 def read(particles, bonds=None, length_unit="m"):
 	"""Packing from a CSV file with the columns id, x, y, z, r (in any order, others are ignored) and, where given,
 	bonds from one with i, j, which are such ids; or from a text file with x y z r in each line, as YADE's
-	``SpherePack.save`` and ``export.text`` write it, where the ids are 0, 1, ….
+	``SpherePack.save``, ``export.text`` and ``export.textExt`` write it; ids are 0, 1, … where it has none.
 
 	:param length_unit: of the file: "m", "cm", "mm" or "um"
 	:raises ValueError: naming file, line and what is wrong there
@@ -367,21 +367,30 @@ def _records(path, columns):
 
 
 def _plain_records(path):
-	"""The same of a file of lines "x y z r …", without a header but for comments; None where it is none."""
+	"""The same of a file of lines "x y z r …", in the columns that YADE's line "#format id_x_y_z_r_…" names where
+	there is one; None where it is none."""
+	columns, lines = ["x", "y", "z", "r"], []
 	with open(path, encoding="utf-8") as file:
-		lines = [
-			(number, line.split())
-			for number, line in enumerate(file, 1)
-			if not line.lstrip().startswith("#")
-		]
-	lines = [(number, fields) for number, fields in lines if fields]
+		for number, line in enumerate(file, 1):
+			if line.startswith("#format"):
+				columns = line.partition(" ")[2].strip().split("_")
+				if not {*"xyzr"} <= set(columns):
+					raise ValueError(
+						f"{path}, line {number}: the format must name x, y, z and r: "
+						f"{line.strip()}"
+					)
+			elif line.strip() and not line.lstrip().startswith("#"):
+				lines.append((number, line.split()))
 	if not lines or not re.fullmatch(r"[-+.\d]\S*", lines[0][1][0]) or "," in "".join(lines[0][1]):
 		return None
-	short = [number for number, fields in lines if len(fields) < 4]
+	needed = max(columns.index(name) for name in "xyzr") + 1
+	short = [number for number, fields in lines if len(fields) < needed]
 	if short:
-		raise ValueError(f"{path}, line {short[0]}: a line of numbers must have x y z r at least")
+		raise ValueError(
+			f"{path}, line {short[0]}: a line of numbers must have {' '.join(columns[:needed])} at least"
+		)
 	return [
-		(f"{path}, line {number}", {"id": str(row), **dict(zip("xyzr", fields))})
+		(f"{path}, line {number}", {"id": str(row), **dict(zip(columns, fields))})
 		for row, (number, fields) in enumerate(lines)
 	]
 

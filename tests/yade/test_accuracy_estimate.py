@@ -52,6 +52,7 @@ def test_spheres_before_a_run():
 	O.dt = ddem.bonded.time_step(0.8)
 	found = ddem.estimate(steps=50, bench=0.2)
 	assert (found.steps, found.particles, found.kind) == (50, len(sample), "sphere")
+	assert found.effects == {}  # what a material of bonds switches is in the contacts already
 	assert found.ruling is None and found.dt / found.critical == pytest.approx(0.8) and found.seconds[0] > 0
 
 
@@ -74,14 +75,15 @@ def test_what_was_measured_is_kept_until_the_scene_is_another(cache, monkeypatch
 	def estimated(more=0, **options):
 		O.reset()
 		ddem.append(ddem.mesh.rectangle(0.02, 0.04, nx=8 + more, ny=16, pattern="crossed"), elastic())
-		start(rotation=options.pop("rotation", "cosserat"))
+		start(rotation=options.pop("rotation", "cosserat"), flowInterval=options.pop("flowInterval", 1))
 		return ddem.estimate(steps=100, bench=0.2, **options).ns_strained
 
 	first = estimated()
 	assert estimated() == first and len(asked) == 1
 	(line, ) = [json.loads(text) for text in (cache / "steps.jsonl").read_text().splitlines()]
 	assert line["node"] in line["settings"]["machine"]  # the machine's name is part of the key
-	for number, change in enumerate(({"more": 8}, {"rotation": "none"}, {"fresh": True}), 2):
+	changes = ({"more": 8}, {"rotation": "none"}, {"flowInterval": 2}, {"fresh": True})
+	for number, change in enumerate(changes, 2):
 		estimated(**change)
 		assert len(asked) == number
 

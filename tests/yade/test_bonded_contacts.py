@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from yade import (
-	BondedInteractionLoop, BondedMat, Bo1_Box_Aabb, Bo1_Sphere_Aabb, ElasticWallMat, ForceResetter, FrictMat,
-	GlobalStiffnessTimeStepper, Ig2_Box_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, InsertionSortCollider,
-	Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Quaternion,
-	TriaxialStressController, Vector3, ddem, utils
+	Bo1_Box_Aabb, Bo1_GridConnection_Aabb, Bo1_Sphere_Aabb, BondedInteractionLoop, BondedMat, CohFrictMat,
+	ElasticWallMat, ForceResetter, FrictMat, GlobalStiffnessTimeStepper, Ig2_Box_Sphere_ScGeom,
+	Ig2_GridNode_GridNode_GridNodeGeom6D, Ig2_Sphere_GridConnection_ScGridCoGeom, Ig2_Sphere_Sphere_ScGeom,
+	InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
+	Ip2_CohFrictMat_CohFrictMat_CohFrictPhys, Ip2_FrictMat_BondedMat_BondedPhys,
+	Law2_ScGeom6D_CohFrictPhys_CohesionMoment, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Quaternion,
+	TriaxialStressController, Vector3, ddem, gridpfacet, utils
 )
 
 RADIUS, YOUNG, DENSITY = 1e-3, 60e9, 2600
@@ -210,6 +213,179 @@ def test_a_deforming_cell_carries_its_images():
 	# Without the velocity of the image the centres would seem to move by six.
 	assert O.bodies[1].state.angVel[2] == pytest.approx(-rate / 2, rel=5e-3)
 	assert (slipped() - before) / (10 * O.dt * rate * RADIUS) == pytest.approx(1, rel=0.01)
+
+
+def test_an_edge_that_two_facets_share_is_touched_twice():
+	"""As in all of YADE: an STL plate is twice as stiff along its inner edges."""
+	rock()
+	for corners in (((-1, 0, -1), (1, 0, -1), (1, 0, 1)), ((-1, 0, -1), (1, 0, 1), (-1, 0, 1))):
+		O.bodies.append(
+			utils.facet([Vector3(*corner) * 0.01 for corner in corners], material="rock", fixed=True)
+		)
+	one = ball((0, RADIUS - 1e-6, 0))
+	O.engines = ddem.bonded.engines()
+	O.dt = 1e-9
+	O.step()
+	assert O.forces.f(one)[1] == pytest.approx(2 * SPRING * 1e-6, rel=1e-6)
+
+
+# ---- the bound on the time step ----
+
+INERTIA = 0.4 * MASS * RADIUS**2
+SHEAR = SPRING / 2.5  # G = E/2(1 + nu)
+
+
+@pytest.mark.parametrize("shape", ("wall", "box", "facet"))
+def test_the_bound_on_a_plane_is_that_of_normal_or_rolling(shape):
+	"""2/omega: k/m along the normal, or k_s (1/m + r²/I) of slip and spin."""
+	on(shape, 1e-6)
+	O.step()
+	highest = max(SPRING / MASS, SHEAR * (1 / MASS + RADIUS**2 / INERTIA))
+	assert ddem.bonded.critical_time_step() == pytest.approx(2 / math.sqrt(highest), rel=1e-6)
+
+
+@pytest.mark.parametrize("shape", ("wall", "box", "facet"))
+@pytest.mark.parametrize("share, grows", ((0.9, False), (1.1, True)))
+def test_the_bound_on_a_plane_is_sharp(shape, share, grows):
+	"""A sticking sphere that rocks: below the bound it stays as fast, above it blows up; by YADE's own loop, which
+	is not watched."""
+	one, _, normal, _ = on(shape, 1e-6, frictionStatic=1e9, frictionDynamic=1e9)
+	O.step()
+	functors = [list(getattr(O.engines[2], f"{kind}Dispatcher").functors) for kind in ("geom", "phys", "law")]
+	O.engines = [*O.engines[:2], InteractionLoop(*functors), *O.engines[3:]]
+	O.forces.setPermF(one, -SPRING * 1e-6 * normal)
+	state = O.bodies[one].state
+	state.vel = 1e-6 * normal.cross(Vector3(0, 0, 1))
+	O.dt = share * ddem.bonded.critical_time_step()
+	speed = 0
+	for _ in range(100):
+		O.step()
+		speed = max(speed, state.vel.norm())
+	assert (speed > 1e-4) == grows
+
+
+@pytest.mark.parametrize("shape", ("wall", "box", "facet"))
+def test_elastic_planes_count_in_the_bound(shape):
+	"""One spring of pi r K along the normal: 2 sqrt(m/k)."""
+	O.materials.append(ElasticWallMat(label="plate", stiffness=1e13))
+	on(shape, 1e-9, material="plate")
+	O.step()
+	assert ddem.bonded.critical_time_step() == pytest.approx(
+		2 * math.sqrt(MASS / (math.pi * RADIUS * 1e13)), rel=1e-6
+	)
+
+
+def test_contacts_of_frictmat_count_in_the_bound():
+	O.materials.append(FrictMat(label="steel", young=200e9, poisson=0.3, frictionAngle=0.3, density=7800))
+	for x in (0, 2 * RADIUS - 1e-6):
+		O.bodies.append(utils.sphere((x, 0, 0), RADIUS, material="steel"))
+	O.engines = ddem.bonded.engines()
+	O.dt = 1e-9
+	O.step()
+	(contact, ) = O.interactions
+	mass = O.bodies[0].state.mass
+	normal, slip = contact.phys.kn * 2 / mass, contact.phys.ks * (2 / mass + 2 * 2.5 / mass)
+	assert ddem.bonded.critical_time_step() == pytest.approx(2 / math.sqrt(max(normal, slip)), rel=1e-6)
+
+
+def test_members_of_a_clump_count_with_its_mass():
+	"""Eight spheres that overlap: their clump weighs less than they do together. The bound is not above the exact
+	one of the normal springs, 2 sqrt(M/8k), and just below it the clump swings as with a fifth of the step."""
+
+	def swings(share):
+		O.reset()
+		rock()
+		members = [
+			utils.sphere((0.1 * i * RADIUS, RADIUS - 1e-6, 0), RADIUS, material="rock") for i in range(8)
+		]
+		clump, _ = O.bodies.appendClumped(members, discretization=30)
+		O.bodies.append(utils.wall(0, axis=1, material="rock"))
+		O.engines = ddem.bonded.engines()
+		O.dt = 1e-9
+		O.step()
+		mass, bound = O.bodies[clump].state.mass, ddem.bonded.critical_time_step()
+		assert mass < 3 * MASS and bound <= 2 * math.sqrt(mass / (8 * SPRING)) * (1 + 1e-9)
+		O.forces.setPermF(clump, (0, -8 * SPRING * 1e-6, 0))
+		O.bodies[clump].state.vel = (0, 1e-4, 0)
+		O.dt, fastest = share * bound, 0
+		for _ in range(round(200 / share)):
+			O.step()
+			fastest = max(fastest, O.bodies[clump].state.vel.norm())
+		return fastest
+
+	assert swings(0.95) == pytest.approx(swings(0.19), rel=0.1)
+
+
+def test_a_clump_that_is_held_counts_as_a_wall():
+	one, _, _, _ = on("clump member", 1e-6)
+	O.step()
+	highest = max(SPRING / MASS, SHEAR * (1 / MASS + RADIUS**2 / INERTIA))
+	assert ddem.bonded.critical_time_step() == pytest.approx(2 / math.sqrt(highest), rel=1e-6)
+
+
+@pytest.mark.parametrize("shape", ("wall", "facet", "box"))
+def test_a_contact_that_forms_in_a_run_is_watched(shape):
+	"""A free ball hits with three times sqrt(m/k): without a stop it leaves several times as fast as it came."""
+	one, _, normal, _ = on(shape, 0)
+	O.bodies[one].state.pos += 2e-6 * normal
+	O.bodies[one].state.vel = -1.0 * normal
+	O.dt = 3 * math.sqrt(MASS / SPRING)
+	with pytest.raises(RuntimeError, match=f"critical time step .* set by bodies #.* and #"):
+		O.run(2000, True)
+	assert O.iter < 100 and O.bodies[one].state.vel.norm() < 20
+
+
+def test_bonds_that_are_made_in_a_run_are_watched_one_by_one_too():
+	rock()
+	one, two = ball((0, 0, 0)), ball((2 * RADIUS, 0, 0))
+	O.engines = ddem.bonded.engines()
+	O.engines[2].loopOnSortedInteractions = True
+	O.dt = 3 * math.sqrt(MASS / SPRING)
+	O.run(10, True)
+	Ip2_BondedMat_BondedMat_BondedPhys().bond([(one, two)])
+	with pytest.raises(RuntimeError, match="above the critical time step"):
+		O.run(10, True)
+
+
+@pytest.mark.parametrize("sorted_", (False, True))
+def test_what_a_functor_stops_is_an_error_and_not_the_end_of_the_program(sorted_):
+	"""Walls that have met; also where interactions go one by one."""
+	O.materials.append(ElasticWallMat(label="plate", stiffness=50e9))
+	one, _, normal, _ = on("wall", 1e-6, material="plate")
+	O.engines[2].loopOnSortedInteractions = sorted_
+	O.step()
+	O.bodies[one].state.pos = -1.5 * RADIUS * normal
+	O.bodies[0].shape.sense = 1
+	with pytest.raises(RuntimeError, match="m behind the wall #0 .* the platens have met"):
+		O.run(3, True)
+
+
+def test_grid_connections_are_refused():
+	"""Their forces would have to go to the nodes."""
+	rock()
+	O.materials.append(CohFrictMat(label="wire"))
+	O.engines = [
+		ForceResetter(),
+		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_GridConnection_Aabb()]),
+		BondedInteractionLoop(
+			[Ig2_GridNode_GridNode_GridNodeGeom6D(), Ig2_Sphere_GridConnection_ScGridCoGeom()],
+			[
+				Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_FrictMat_BondedMat_BondedPhys(),
+				Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()
+			],
+			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom6D_CohFrictPhys_CohesionMoment()]
+		),
+		NewtonIntegrator(),
+	]
+	nodes = [
+		O.bodies.append(gridpfacet.gridNode((x, 0, 0), 0.2e-3, material="wire", fixed=True))
+		for x in (-5e-3, 5e-3)
+	]
+	O.bodies.append(gridpfacet.gridConnection(*nodes, 0.2e-3, material="wire"))
+	ball((0, RADIUS + 0.15e-3, 0))
+	O.dt = 1e-10
+	with pytest.raises(RuntimeError, match="no contact with grid connections and PFacets"):
+		O.run(3, True)
 
 
 # ---- YADE's steppers and controllers ----

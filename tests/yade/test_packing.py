@@ -188,3 +188,20 @@ def test_pieces():
 	three = packing.Packing([[x, 0, 0] for x in range(5)], [0.5] * 5)
 	assert three.pieces([[3, 4], [2, 3]]).tolist() == [1, 2, 0, 0, 0]
 	assert three.pieces([[0, 1], [1, 2], [2, 3], [3, 4]]).tolist() == [0] * 5
+
+
+def test_columns_are_those_that_yade_names(tmp_path):
+	"""export.textExt writes the id first where it is asked to."""
+	from yade import O, export, utils
+	O.reset()
+	for x in (0.1, 0.2):
+		O.bodies.append(utils.sphere((x, 0.3, 0.4), 0.01))
+	export.textExt(str(tmp_path / "with_ids.txt"), format="id_x_y_z_r_matId")
+	found = packing.read(tmp_path / "with_ids.txt")
+	assert found.centres.tolist() == [[0.1, 0.3, 0.4], [0.2, 0.3, 0.4]] and found.radii.tolist() == [0.01, 0.01]
+	(tmp_path / "other.txt").write_text("#format jointedPM\n0 0 0 1\n")
+	with pytest.raises(
+		ValueError, match="other.txt, line 1: the format must name x, y, z and r: #format jointedPM"
+	):
+		packing.read(tmp_path / "other.txt")
+	O.reset()

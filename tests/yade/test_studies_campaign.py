@@ -42,8 +42,9 @@ def started(tmp_path):
 	return lambda: sorted(line.split()[1] for line in (tmp_path / "started").read_text().splitlines())
 
 
-def campaign(tmp_path, yade, cases=CASES, workers=None, **options):
-	return Campaign("script.py", cases, tmp_path / "runs", workers or Here(), yade=yade, **options)
+def campaign(tmp_path, yade, cases=CASES, workers=None, text="", **options):
+	(tmp_path / "script.py").write_text(text)
+	return Campaign(tmp_path / "script.py", cases, tmp_path / "runs", workers or Here(), yade=yade, **options)
 
 
 def test_every_case_has_a_folder(tmp_path, yade, started):
@@ -74,6 +75,24 @@ def test_other_options_or_another_plugin_are_another_run(tmp_path, yade, started
 	changed = [CASES[0], CASES[1], Case("seed3", ("--seed", "3", "--young", "1"))]
 	campaign(tmp_path, yade(), changed).run()
 	assert started() == ["1", "2", "2", "3", "3"]
+
+
+def test_another_script_is_another_run(tmp_path, yade, started):
+	campaign(tmp_path, yade()).run()
+	campaign(tmp_path, yade(), text="# changed").run()
+	assert started() == ["1", "1", "2", "2", "3", "3"]
+
+
+def test_a_run_that_ended_while_the_user_interrupted_is_kept(tmp_path, yade, started):
+	"""All three have ended when the first one is told, and Ctrl-C comes then."""
+
+	def press(*_):
+		raise KeyboardInterrupt
+
+	with pytest.raises(KeyboardInterrupt):
+		campaign(tmp_path, yade(), report=press).run()  # one after another, so that all have ended
+	campaign(tmp_path, yade()).run()
+	assert started() == ["1", "2", "3"]
 
 
 def test_unfinished_run_is_made_again_in_an_empty_folder(tmp_path, yade, started):

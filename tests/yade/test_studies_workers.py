@@ -11,7 +11,7 @@ import pytest
 from distributed import Client
 
 from yade.ddem.studies import questions, workers, yade_process
-from yade.ddem.studies.evaluations import Bench, EvaluationError
+from yade.ddem.studies.evaluations import Bench, EvaluationError, Lost
 from yade.ddem.studies.virtualtest import SeparateYade, Setup
 from yade.ddem.studies.workers import Workers
 
@@ -235,6 +235,52 @@ def test_results_of_two_machines_are_not_mixed(cluster, monkeypatch):
 		found = [work.submit(os.getpid) for _ in range(12)]
 		there = {pid for address, pid in work.workers.items() if "127.0.0.2" in address}
 		assert there and not there & {future.result() for future in found}
+
+
+def test_stop_on_a_cluster_leaves_nothing_of_a_queue(cluster, tmp_path):
+	"""More is queued than there are workers: what would start next is not started."""
+	yade = program(tmp_path, f"echo $$ >> {tmp_path}/running; exec sleep infinity")
+	asked = questions.Questions("any", Workers(cluster=cluster), yade)
+	futures = [asked.submit({}) for _ in range(12)]
+	until(lambda: number(tmp_path / "running"))
+	asked.stop()
+	begun = (tmp_path / "running").read_text().split()
+	until(lambda: all(map(gone, begun)))
+	with Workers(cluster=cluster) as work:  # workers are free, and took nothing else from the queue
+		assert [work.submit(divmod, 7, 2).result() for _ in range(6)] == [(3, 1)] * 6
+	assert (tmp_path / "running").read_text().split() == begun and len(begun) <= 3
+	assert all(isinstance(future.exception(), EvaluationError) for future in futures if future.done())
+
+
+def test_a_scheduler_that_goes_is_no_failed_evaluation(tmp_path):
+	"""Its text says what has gone; nothing is written as failed, and what was made is kept."""
+	log = open(tmp_path / "log", "wb")
+	start = lambda *arguments: subprocess.Popen(
+		[sys.executable, "-m", "dask", *arguments], stdout=log, stderr=subprocess.STDOUT, start_new_session=True
+	)
+	place = tmp_path / "scheduler.json"
+	scheduler = start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard",
+		"--scheduler-file", str(place))
+	until(place.exists)
+	address = json.loads(until(lambda: place.read_text()))["address"]
+	nanny = start("worker", "--nthreads", "1", "--no-dashboard", "--memory-limit", "0", address)
+	yade = program(
+		tmp_path, f"""grep -q '"x": 2' $request && {{ echo $$ > {tmp_path}/running; exec sleep infinity; }}
+		{says({"y": 1.0})}"""
+	)
+	work = Workers(cluster=address)
+	with Bench(evaluate_of(questions.Questions("any", work, yade)), path=tmp_path / "e") as bench:
+		with concurrent.futures.ThreadPoolExecutor() as pool:
+			waiting = pool.submit(bench.measure, [{"x": 1}, {"x": 2}])
+			until(lambda: number(tmp_path / "running"))
+			scheduler.kill()
+			with pytest.raises(Lost, match=f"the Dask scheduler at {address} is gone"):
+				waiting.result()
+	assert [json.loads(line)["error"] for line in (tmp_path / "e").read_text().splitlines()] == [None]
+	for process in (nanny, scheduler):
+		process.kill()
+		process.wait()
+	log.close()
 
 
 def test_a_cluster_that_does_not_answer_is_told(monkeypatch):

@@ -10,7 +10,7 @@ import os
 import random
 import tempfile
 
-from yade import DeformableEngine, O, Sphere, ddem
+from yade import DeformableEngine, DeformableTriangle, O, Sphere, ddem
 
 from .. import meter
 from ..studies.evaluations import Bench
@@ -18,6 +18,7 @@ from ..studies.questions import Questions
 
 APART = ("PyRunner", "SnapshotEngine", "VTKRecorder", "TorqueRecorder", "ForceRecorder")  #: engines left out
 _EFFECT = "effect:"
+_COUNTERS = ("execTime", "execCount", "realLast")  # of engines: differ from run to run
 _SAMPLES = 3
 
 
@@ -85,7 +86,11 @@ def _composition():
 	engines = [
 		[
 			type(engine).__name__,
-			sorted((k, str(v)) for k, v in engine.dict().items() if isinstance(v, (bool, str))),
+			sorted(
+				(name, str(value))
+				for name, value in engine.dict().items()
+				if isinstance(value, (bool, str, int, float)) and name not in _COUNTERS
+			),
 		]
 		for engine in O.engines
 		if type(engine).__name__ not in APART
@@ -125,8 +130,11 @@ def measure(asked):
 
 
 def _switches():
-	"""Switches of the materials in use that are on."""
-	materials = {body.mat.id: body.mat for body in O.bodies if body and body.mat}
+	"""Switches that are on, of the materials of triangles;
+	those of bonded spheres are in their contacts already."""
+	materials = {
+		body.mat.id: body.mat for body in O.bodies if body and isinstance(body.shape, DeformableTriangle)
+	}
 	return [
 		(material, name)
 		for material in materials.values()

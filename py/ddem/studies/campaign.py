@@ -14,6 +14,8 @@ The script needs an option --out for its folder, and must leave a summary.json t
 of commandline.versions(). Workers of a cluster must see the script and the folder under the same paths.
 """
 import concurrent.futures
+import contextlib
+import hashlib
 import json
 import os
 from dataclasses import dataclass
@@ -23,6 +25,7 @@ from yade import config
 from .. import provenance
 from . import yade_process
 from .commandline import plugin
+from .evaluations import Lost
 
 _SHOWN = 3  # failures that an error shows
 
@@ -42,7 +45,7 @@ class Failed(RuntimeError):
 
 
 class Campaign:
-	"""Runs all cases that are not finished yet.
+	"""Runs all cases that are not finished yet, with this script, YADE and plugin, on such a machine.
 
 	:param script: path of the script
 	:param cases: list of :class:`Case`, in the order in which they are to start
@@ -63,7 +66,12 @@ class Campaign:
 			os.path.abspath(script), list(cases), os.path.abspath(folder), workers, report
 		)
 		self.yade = yade or (None if workers.cluster else yade_process.running())
-		self._current = {"YADE": config.version, "plugin": plugin(), "machine": workers.machine}
+		with open(self.script, "rb") as file:
+			text = hashlib.sha256(file.read()).hexdigest()[:12]
+		self._current = {
+			"YADE": config.version, "plugin": plugin(), "machine": workers.machine,
+			"script": f"{os.path.basename(self.script)} {text}"
+		}
 
 	def folder_of(self, case):
 		return os.path.join(self.folder, case.name)
@@ -82,6 +90,7 @@ class Campaign:
 		"""Run what is missing, and return {case: its folder}.
 
 		:raises Failed: a run has failed; the others are finished first, and are kept
+		:raises evaluations.Lost: the scheduler of the cluster is gone; what is finished is kept
 		"""
 		missing = []
 		for case in self.cases:
@@ -90,6 +99,19 @@ class Campaign:
 			else:
 				missing.append(case)
 		failures, started = [], {}
+
+		def finish(done):
+			case = started.pop(done)
+			try:
+				code, seconds = done.result()
+				self._finish(case, code)
+			except Lost:
+				raise
+			except Exception as error:  # its workers died, or it has left nothing
+				failures.append(f"{case.name}: {error}")
+			else:
+				self.report(case, self.folder_of(case), seconds)
+
 		try:
 			for case in missing:
 				arguments = [*case.arguments, "--out", self.folder_of(case)]
@@ -98,17 +120,14 @@ class Campaign:
 					self.yade, self.workers.owner, os.getcwd()
 				)
 				started[future] = case
-			for done in concurrent.futures.as_completed(started):
-				case = started[done]
-				try:
-					code, seconds = done.result()
-					self._finish(case, code)
-				except Exception as error:  # its workers died, or it has left nothing
-					failures.append(f"{case.name}: {error}")
-				else:
-					self.report(case, self.folder_of(case), seconds)
+			for done in concurrent.futures.as_completed(list(started)):
+				finish(done)
 		except BaseException:
+			ended = [(done, case) for done, case in started.items() if done.done() and not done.exception()]
 			self.workers.stop()
+			for done, case in ended:  # not to be made again
+				with contextlib.suppress(RuntimeError):
+					self._finish(case, done.result()[0])
 			raise
 		if failures:
 			more = [f"and {len(failures) - _SHOWN} more"] if len(failures) > _SHOWN else []

@@ -155,6 +155,7 @@ class Bench:
 		are made at the same time.
 
 		:raises OutOfBudget: it would take more new evaluations than are left; none was started
+		:raises Lost: what evaluates is gone; what was finished is kept
 		"""
 		jobs = {
 			fingerprint(self.settings, values, case): (values, case)
@@ -204,7 +205,7 @@ class Bench:
 			done = [future for future in running if future.done() and not future.cancelled()]
 			getattr(self.evaluate, "stop", lambda: None)()
 			for future in done:
-				if future.exception() is None:
+				if future in running and future.exception() is None:
 					keep(future)
 			raise
 		return records
@@ -233,6 +234,8 @@ class Bench:
 			if wrong:
 				raise ValueError(f"measured {', '.join(wrong)}")
 			record["measured"] = measured
+		except Lost:
+			raise
 		except EvaluationError as error:
 			record["error"] = str(error)
 		except Exception as error:
@@ -269,6 +272,10 @@ class Bench:
 
 class EvaluationError(RuntimeError):
 	"""An evaluation that failed for a reason its text says in full."""
+
+
+class Lost(OSError):
+	"""What evaluates is gone, as the scheduler of a cluster: no evaluation has failed, and none can be made."""
 
 
 class OutOfBudget(RuntimeError):

@@ -3,7 +3,7 @@
 import concurrent.futures
 
 from . import yade_process
-from .evaluations import ABOUT, EvaluationError
+from .evaluations import ABOUT, EvaluationError, Lost
 from .workers import Here
 
 
@@ -23,7 +23,8 @@ class Questions:
 	def submit(self, request, threads=None):
 		"""A concurrent.futures.Future of what is measured for a request, both plain data, with
 		:data:`evaluations.ABOUT`; *threads* in place of those of all. The future raises
-		:class:`evaluations.EvaluationError` where nothing can be measured.
+		:class:`evaluations.EvaluationError` where nothing can be measured, :class:`evaluations.Lost` where the
+		workers are gone.
 
 		:raises evaluations.EvaluationError: the workers were told to stop
 		"""
@@ -50,8 +51,8 @@ class Questions:
 
 
 def _settle(answered, done):
-	if done.cancelled():
-		answered.set_exception(EvaluationError("interrupted"))
+	if isinstance(done.exception(), (Lost, EvaluationError)):
+		answered.set_exception(done.exception())
 	elif done.exception() is not None:
 		answered.set_exception(EvaluationError(f"{type(done.exception()).__name__}: {done.exception()}"))
 	else:

@@ -18,11 +18,14 @@ import os
 import platform
 import signal
 import sys
+import threading
 import uuid
 
 from ..provenance import processor
 from . import yade_process
+from .evaluations import EvaluationError, Lost
 
+_QUIET_LOOKS = 3  # at a cluster without a process of one's own, until all have ended
 ANSWER, WAIT = 10, 60  #: time for a scheduler to answer, and for its first worker to come [s]
 #: of the workers, for their own words: only errors; what their YADEs say is kept with each run
 _QUIET = {"DASK_LOGGING__DISTRIBUTED": "critical"}
@@ -63,6 +66,8 @@ class Workers:
 	:param cluster: address of a Dask scheduler, as "tcp://node0:8786"; its workers must be able to start "yade"
 		with this plugin, and see the same files
 	:param alike: what makes two machines the same: "processor", for results; "node", for times
+	Futures raise :class:`evaluations.Lost` where the scheduler goes.
+
 	:raises OSError: no scheduler answers there, or it has no workers within :data:`WAIT`
 	"""
 
@@ -75,6 +80,7 @@ class Workers:
 		self.owner = uuid.uuid4().hex  #: of the processes that are started, see :func:`yade_process.end`
 		self._client = self._local = None
 		# addresses of all workers of the cluster, hosts of those that are used
+		self._executors = []
 		self._known, self._own = set(), []
 		self._stopped = False
 		#: name of the machines that are used
@@ -106,14 +112,38 @@ class Workers:
 		if self._client is None:
 			self._start()
 		hosts = {"workers": self._hosts(), "allow_other_workers": False} if self.cluster else {}
-		return self._client.get_executor(pure=False, **hosts).submit(ByValue(function), *arguments)
+		executor = self._client.get_executor(pure=False, **hosts)
+		self._executors.append(executor)
+		answered = concurrent.futures.Future()
+		executor.submit(ByValue(function), *arguments).add_done_callback(
+			lambda done: self._settle(answered, done)
+		)
+		return answered
+
+	def _settle(self, answered, done):
+		"""Pass on what Dask says; it cancels what it cannot make any more."""
+		if not done.cancelled():
+			error = done.exception()
+			answered.set_result(done.result()) if error is None else answered.set_exception(error)
+		elif self._stopped:
+			answered.set_exception(EvaluationError("interrupted"))
+		else:
+			answered.set_exception(Lost(f"the Dask scheduler at {self.cluster or 'this machine'} is gone"))
 
 	def stop(self):
 		"""End what is running, and start nothing more."""
 		self._stopped = True
 		if self.cluster is not None and self._client is not None:
 			with contextlib.suppress(OSError):  # they are gone already
-				self._client.run(ByValue(yade_process.end), self.owner, on_error="ignore")
+				for executor in self._executors:
+					executor.shutdown(wait=False)  # cancels what is queued, which would start next
+				quiet = 0
+				while quiet < _QUIET_LOOKS:  # one may be starting just now
+					ended = self._client.run(
+						ByValue(yade_process.end), self.owner, on_error="ignore"
+					)
+					quiet = 0 if any(ended.values()) else quiet + 1
+					threading.Event().wait(0.1)
 		self.close()
 
 	def close(self):

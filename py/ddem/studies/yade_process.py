@@ -116,14 +116,17 @@ def running():
 
 
 def end(owner):
-	"""End all processes of an owner that the calling process has started."""
+	"""End all processes of an owner that the calling process has started, and return how many there were."""
 	import psutil
+	ended = 0
 	for process in psutil.Process().children(recursive=True):
 		try:
 			if process.environ().get(OWNER) == owner:
 				process.kill()
+				ended += 1
 		except psutil.Error:  # it has ended by itself
 			pass
+	return ended
 
 
 def ending(code):

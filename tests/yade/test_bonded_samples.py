@@ -1,0 +1,91 @@
+# GPL v2 or later, see LICENSE.
+"""Samples of bonded spheres as users of YADE make and change them."""
+import math
+
+import numpy as np
+import pytest
+
+from yade import BondedMat, O, pack
+from yade.ddem import bonded, packing, vtk
+from yade.ddem.studies.snapshots import SphereSnapshot
+
+
+def specimen():
+	"""A sample between platens, with its engines."""
+	O.materials.append(BondedMat(label="rock"))
+	sample = bonded.append(packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200), "rock")
+	platens = bonded.platens(sample, velocity=2.0, ramp=10e-6)
+	O.engines = bonded.engines(platens, viscosity=2)
+	O.dt = bonded.time_step(0.5)
+	return sample, platens
+
+
+def test_a_sphere_is_erased_and_all_goes_on(tmp_path):
+	"""Excavation: counts, arrays and ParaView files are those of the spheres that are left."""
+	sample, platens = specimen()
+	O.run(50, True)
+	before, gone = len(sample), int(sample.ids[10])
+	held = len(sample.bonds)
+	of_it = int((sample.bonds == gone).any(axis=1).sum())
+	others = np.delete(np.arange(before), 10)
+	positions, damage = sample.positions[others], sample.damage[others]
+	O.bodies.erase(gone)
+	assert len(sample) == before - 1 and gone not in sample.ids
+	assert (sample.positions == positions).all() and sample.damage == pytest.approx(damage)
+	O.run(10, True)
+	assert len(sample.bonds) == held - of_it and not (sample.bonds == gone).any()
+	for name in ("positions", "velocities", "displacements", "rotations", "radii", "damage"):
+		assert len(getattr(sample, name)) == before - 1
+	assert sample.rows([gone, sample.ids[0]]).tolist() == [-1, 0]
+	vtk.Recorder(sample, str(tmp_path / "erased"))()
+	assert SphereSnapshot.of(sample, O.time).centres.shape == (before - 1, 3)
+	assert sample.degrees_of_freedom == 6 * (before - 1)
+
+
+def test_a_specimen_in_pieces_is_told():
+	"""Spheres of nearly one size hardly touch."""
+	rock = BondedMat(label="rock")
+	O.materials.append(rock)
+	loose = packing.prism(0.02, 0.02, 0.02, rmin=1.9e-3, rmax=2e-3, seed=1, fails=200)
+	with pytest.warns(
+		UserWarning, match=r"are in \d+ pieces: \d+ in the largest, \d+ loose; a larger gap="
+	):
+		bonded.append(loose, rock)
+
+
+def test_a_sphere_pack_is_appended():
+	O.materials.append(BondedMat(label="rock"))
+	spheres = pack.SpherePack([((0, 0, 0), 0.01), ((0.02, 0, 0), 0.01)])
+	O.engines = bonded.engines()
+	assert bonded.append(spheres, "rock").bonds.tolist() == [[0, 1]]
+
+
+def test_the_area_of_a_cylinder_is_its_own():
+	"""Stress of UCS is force over pi/4 D² (ISRM), not over the square around it."""
+	width = 0.01
+	box = packing.prism(width, 0.02, width, 0.5e-3, 1e-3, seed=1, fails=300)
+	inside = np.hypot(box.centres[:, 0] - width / 2, box.centres[:, 2]) + box.radii < width / 2 + 1e-6
+	O.materials.append(BondedMat(label="rock"))
+	column = packing.Packing(box.centres[inside], box.radii[inside], box.lower, box.upper)
+	sample = bonded.append(column, "rock", gap=1e-5)
+	platens = bonded.platens(sample, velocity=0.2, area=math.pi / 4 * width**2)
+	O.engines = bonded.engines(platens)
+	O.dt = bonded.time_step(0.8)
+	O.run(100, True)
+	force = 0.5 * (platens.force_top + platens.force_bottom)
+	assert platens.stress == pytest.approx(force / (math.pi / 4 * width**2)) and force > 0
+	with pytest.raises(ValueError, match="area = 1 m² must be positive, and not above"):
+		bonded.platens(sample, velocity=0.2, area=1)
+
+
+def test_platens_that_meet_stop():
+	"""100 m/s: without a stop the walls pass each other with a stress of a million MPa."""
+	sample, _ = specimen()
+	platens = bonded.platens(sample, velocity=100)
+	O.engines = bonded.engines(platens)
+	O.dt = bonded.time_step(0.8)
+	with pytest.raises(
+		RuntimeError, match=r"sphere #\d+ is .* m behind the wall #\d+ .*: the platens have met"
+	):
+		O.run(int(2.5e-4 / O.dt), True)
+	assert platens.strain < 1.1
