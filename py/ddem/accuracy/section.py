@@ -88,10 +88,11 @@ class Section:
 		return {**found, "notes": self.notes}
 
 	def figures(self):
-		"""Name of the file -> picture of a model, None where nothing can be drawn."""
+		"""Name of the file -> picture of a model; None where no quantity shows a trend over the sizes."""
+		told = {self.names[title]: _told(points) for title, points in self.points.items()}
 		return {
-			f"cost_{self.names[title]}": figures.work_precision(_told(points))
-			for title, points in self.points.items()
+			f"cost_{name}": figures.work_precision(points) if points else None
+			for name, points in told.items()
 		}
 
 
@@ -107,9 +108,12 @@ def _plain(point):
 
 
 def _told(points):
-	"""The same points with the errors that can be told of them, and the front of these."""
+	"""The same points with the errors that their numbers support, and the front of these; without quantities that
+	show no trend, whose errors are one bound for all sizes."""
 	found = []
 	for group in sentences.grouped(points).values():
+		if any(math.isnan(p.error) for p in group if not p.failed):
+			continue
 		group = [replace(p, error=sentences.supported(p)) for p in group]
 		places = convergence.front([p.cpu_s for p in group], [p.error for p in group])
 		found += [replace(p, pareto=place in places) for place, p in enumerate(group)]

@@ -347,25 +347,28 @@ def engines(points):
 
 def of_one(points):
 	"""What the finest sample of a ladder with seeds costs, beside its error of discretisation and the scatter of
-	samples, for the points of one quantity: "strength with 3 mm: …". Empty where it gave no result."""
+	samples, for the points of one quantity: "Strength with 3 mm: …". Empty where it gave no result."""
 	good = [p for p in points if not p.failed and p.step is not None]
 	if not good:
 		return ""
 	finest = min(good, key=lambda p: p.step)
-	told = f"{finest.quantity} with {finest.rung}: {seconds(finest.cpu_s)} of processor time a sample"
+	name = finest.quantity[:1].upper() + finest.quantity[1:]
+	told = f"{name} with {finest.rung}: {seconds(finest.cpu_s)} of processor time a sample"
 	error = supported(finest)
 	if math.isfinite(error) and finest.source:
-		told += f", error of discretisation {per_cent(error)} ({finest.source})"
+		bound = "up to " if math.isnan(finest.error) else ""
+		told += f", error of discretisation {bound}{per_cent(error)} ({finest.source})"
 	else:
 		told += ", error of discretisation not known: there is no coarser sample to compare with"
 	if finest.scatter is None:
 		return told + "."
 	told += f", scatter of samples {per_cent(finest.scatter)}"
-	if math.isfinite(error) and finest.source:
-		told += ": more seeds show more than a finer sample" if finest.scatter > error else (
-			": a finer sample shows more than more seeds"
-		)
-	return told + "."
+	if not (math.isfinite(error) and finest.source):
+		return told + "."
+	if math.isnan(finest.error):  # the bound on the error is then that of what scatters
+		return told + ": sizes show no trend, so more seeds come first."
+	more, less = ("more seeds", "a finer sample") if finest.scatter > error else ("a finer sample", "more seeds")
+	return f"{told}: {more} would show more than {less}."
 
 
 def failures(points):
