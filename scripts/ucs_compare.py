@@ -331,8 +331,8 @@ def read_options():
 		metavar="SEEDS",
 		help=(
 			"report what this accuracy cost: run two coarser samples beside each, with so many seeds "
-			"(2 where no number is given). With the preset quick it adds a minute and a half, with full "
-			"ten times that"
+			"(2 where no number is given; spheres scatter more, and may want 4). Adds a minute and a half "
+			"to the preset quick, about a quarter of an hour to full"
 		),
 	)
 	test = parser.add_argument_group("test")
