@@ -2,6 +2,7 @@
 """The script that shows what accuracy costs: on a ladder of one's own, from the command line to the files."""
 import json
 
+import falling_ladder
 import origins
 import pytest
 import script_modules
@@ -10,29 +11,6 @@ from yade import ConcreteDamageMat, O
 from yade.ddem.accuracy import ladders, points, prediction, rungs
 from yade.ddem.studies import virtualtest
 from yade.ddem.studies.workers import Here
-
-MINE = '''
-from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
-from yade.ddem.accuracy.ladders import Ladder, Quantity, each
-
-
-def fall(safety):
-	"""A block falls from rest: leapfrog's way is g dt² n (n + 1)/2, longer than g t²/2 by one part in n."""
-	O.materials.append(DeformableElastMat(young=30e9, poisson=0.2, density=2400, label="rock"))
-	block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, size=0.01), "rock")
-	O.engines = [ForceResetter(), DeformableEngine(gravity=(0, -1e6, 0))]
-	O.dt = safety * 1e-7
-	O.run(round(2e-5 / O.dt), True)
-	return {"way": (-block.displacements[:, 1].mean(), 0.5e6 * O.time**2)}
-
-
-LADDERS = [
-	Ladder(
-		"mine", "time-step fraction", fall, each("safety", 0.8, 0.4, 0.2),
-		[Quantity("way", "displacement", "m")], refined="safety"
-	)
-]
-'''
 
 
 @pytest.fixture
@@ -54,10 +32,8 @@ def here(monkeypatch):
 
 
 def test_a_ladder_of_one_s_own(script, here, tmp_path, monkeypatch, capsys):
-	file = tmp_path / "mine.py"
-	file.write_text(MINE)
 	out = tmp_path / "out"
-	arguments = ("--ladders", file, "--out", out, "--target", "0.05%", "--budget", "1h")
+	arguments = ("--ladders", falling_ladder.__file__, "--out", out, "--target", "0.05%", "--budget", "1h")
 	assert script_modules.run(script, monkeypatch, *arguments) == 0
 	said = capsys.readouterr().out
 	rows = json.loads((out / "cost.json").read_text())

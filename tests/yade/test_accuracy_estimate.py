@@ -1,17 +1,17 @@
 # GPL v2 or later, see LICENSE.
 """What is said of a run before it is run: counts exactly, memory nearly, errors by their order,
 times by measurement."""
-import importlib
 import json
-import sys
+from dataclasses import replace
 
+import falling_ladder
 import pytest
 import script_modules
 
 from deformable_samples import elastic, skewed_mesh, start
 from yade import BondedMat, ConcreteDamageMat, DeformableTimeStepper, O, PyRunner, ddem
 from yade.ddem.accuracy import scene_cost
-from yade.ddem.accuracy.ladders import Ladder, Quantity, each
+from yade.ddem.accuracy.ladders import each
 
 
 @pytest.fixture(autouse=True)
@@ -98,29 +98,9 @@ def test_steps_and_memory_are_as_estimated(name):
 	assert row["memory_MB"] == pytest.approx(row["memory_estimated_MB"], rel=0.05)
 
 
-FALL = '''
-from yade import DeformableElastMat, DeformableEngine, ForceResetter, O, ddem
-
-
-def fall(safety):
-	"""A block falls from rest: leapfrog's way is g dt² n (n + 1)/2, longer than g t²/2 by one part in n."""
-	O.materials.append(DeformableElastMat(young=30e9, poisson=0.2, density=2400, label="rock"))
-	block = ddem.append(ddem.mesh.rectangle(0.04, 0.04, size=0.01), "rock")
-	O.engines = [ForceResetter(), DeformableEngine(gravity=(0, -1e6, 0))]
-	O.dt = safety * 1e-7
-	O.run(round(2e-5 / O.dt), True)
-	return {"way": (-block.displacements[:, 1].mean(), 0.5e6 * O.time**2)}
-'''
-
-
-def test_the_error_is_expected_by_the_order_of_cheaper_rungs(tmp_path, monkeypatch, cache):
-	(tmp_path / "falling.py").write_text(FALL)
-	monkeypatch.syspath_prepend(str(tmp_path))
-	monkeypatch.setitem(sys.modules, "falling", importlib.import_module("falling"))
-	fallen = Ladder(
-		"fall", "time-step fraction", sys.modules["falling"].fall, each("safety", 0.8, 0.4, 0.2, 0.1),
-		[Quantity("way", "displacement", "m")], refined="safety"
-	)
+def test_the_error_is_expected_by_the_order_of_cheaper_rungs(cache):
+	(mine, ) = falling_ladder.LADDERS
+	fallen = replace(mine, rungs=each("safety", 0.8, 0.4, 0.2, 0.1), usual={"safety": 0.1})
 	ddem.append(ddem.mesh.rectangle(0.04, 0.04, size=0.01), elastic())
 	start()
 	found = ddem.estimate(steps=10, bench=0.1, ladder=fallen, rung={"safety": 0.1}, target=1e-4)
