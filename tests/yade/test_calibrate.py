@@ -222,7 +222,8 @@ def processes(text):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interrupted_run_ends_its_processes_and_goes_on(tmp_path, number):
 	command = [
-		shutil.which("yade"), "-n", "-x", SCRIPT, *AIM, *SMALL, "--jobs", "2", "--out", str(tmp_path / "out")
+		shutil.which("yade"), "-n", "-x", SCRIPT, *AIM, *SMALL, "--jobs", "2", "--out", str(tmp_path / "out"),
+		"--seeds", "1", "2", "3", "4"  # enough to do when it is interrupted, however late
 	]
 	environment = {**os.environ, "TMPDIR": str(tmp_path)}  # evaluations are found by it
 	process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)

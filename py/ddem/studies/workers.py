@@ -59,6 +59,8 @@ class Here:
 class Workers:
 	"""Workers of this machine, started when something is submitted first; or those of a cluster.
 
+	Futures raise :class:`evaluations.Lost` where the scheduler goes, and what a function raises.
+
 	Results of different machines are not mixed: of a cluster, only workers of one kind of machine are used, the one
 	that has most of them.
 
@@ -66,8 +68,6 @@ class Workers:
 	:param cluster: address of a Dask scheduler, as "tcp://node0:8786"; its workers must be able to start "yade"
 		with this plugin, and see the same files
 	:param alike: what makes two machines the same: "processor", for results; "node", for times
-	Futures raise :class:`evaluations.Lost` where the scheduler goes.
-
 	:raises OSError: no scheduler answers there, or it has no workers within :data:`WAIT`
 	"""
 
@@ -79,8 +79,8 @@ class Workers:
 		self.jobs, self.cluster, self._alike = jobs, cluster, alike
 		self.owner = uuid.uuid4().hex  #: of the processes that are started, see :func:`yade_process.end`
 		self._client = self._local = None
+		self._executors = []  # of all that was submitted
 		# addresses of all workers of the cluster, hosts of those that are used
-		self._executors = []
 		self._known, self._own = set(), []
 		self._stopped = False
 		#: name of the machines that are used
