@@ -2,6 +2,8 @@
 """Evaluations that are kept: what is reused, what is not, and what a killed or damaged run leaves."""
 import concurrent.futures
 import json
+import os
+import signal
 import threading
 
 import pytest
@@ -231,6 +233,21 @@ def test_interruption_keeps_what_was_finished_and_ends_the_rest(tmp_path):
 			bench.measure(points(1, 2, 3))
 	assert stopped.is_set()
 	assert [record["parameters"]["x"] for record in lines(tmp_path / "e")] == [1.0]
+
+
+def test_what_is_written_is_counted_however_the_user_interrupts(tmp_path, monkeypatch):
+	"""Ctrl-C while a line goes to the disk."""
+	plain = Store.add
+
+	def add(self, record):
+		plain(self, record)
+		os.kill(os.getpid(), signal.SIGINT)
+
+	monkeypatch.setattr(Store, "add", add)
+	with Bench(Counted(), path=tmp_path / "e") as bench:
+		with pytest.raises(KeyboardInterrupt):
+			bench.measure(points(1, 2, 3))
+	assert bench.ran == len(lines(tmp_path / "e")) == 1
 
 
 def test_budget(tmp_path):

@@ -20,7 +20,7 @@ from .._lazy import lazy
 
 _MODULES = (
 	"bonded_study", "calibration", "calibration_quantities", "campaign", "commandline", "esys", "evaluations",
-	"measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "workers",
+	"interrupts", "measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "workers",
 	"yade_process"
 )
 __getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

@@ -20,10 +20,12 @@ import hashlib
 import json
 import math
 import os
+import signal
 import time
 from dataclasses import dataclass
 
 from .. import provenance
+from .interrupts import held_back
 
 ABOUT = "about"  #: key, beside the measures, of how they were made: "seconds", and "node" and "processor" on which
 EFFECTS = "effects"  #: key, beside the measures, of what the scene simulated (:meth:`effect_table.EffectTable.rows`)
@@ -243,11 +245,12 @@ class Bench:
 		record["seconds"] = round(waited, 3)
 		record.update(about)
 		record["finished"] = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-		self.store.add(record)
-		self._made.add(key)
-		self.ran += 1
-		self.seconds += record["seconds"]
-		self.failed += record["error"] is not None
+		with held_back(signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # written and counted, or neither
+			self.store.add(record)
+			self._made.add(key)
+			self.ran += 1
+			self.seconds += record["seconds"]
+			self.failed += record["error"] is not None
 		return record
 
 	def _point(self, values, known):

@@ -24,6 +24,7 @@ import uuid
 from ..provenance import processor
 from . import yade_process
 from .evaluations import EvaluationError, Lost
+from .interrupts import held_back
 
 _QUIET_LOOKS = 3  # at a cluster without a process of one's own, until all have ended
 ANSWER, WAIT = 10, 60  #: time for a scheduler to answer, and for its first worker to come [s]
@@ -151,7 +152,7 @@ class Workers:
 		client, local, self._client, self._local = self._client, self._local, None, None
 		for one in (client, local):
 			if one is not None:
-				with _without_interrupts():
+				with held_back(signal.SIGINT):
 					one.close()
 
 	@property
@@ -169,7 +170,7 @@ class Workers:
 		local = {"host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}  # any port that is free
 		options = {**local, "nthreads": 1, "memory_limit": 0, "dashboard": False}
 		worker = {"cls": SubprocessWorker, "options": {"worker_kwargs": options}}
-		with _without_interrupts(), _environment(_QUIET):
+		with held_back(signal.SIGINT), _environment(_QUIET):
 			self._local = SpecCluster(
 				scheduler={"cls": Scheduler, "options": {**local, "dashboard": False}},
 				workers=dict.fromkeys(range(self.jobs), worker), silence_logs="CRITICAL"
@@ -242,16 +243,6 @@ class ByValue:
 			return cloudpickle.loads, (cloudpickle.dumps(self._function), )
 		finally:
 			cloudpickle.unregister_pickle_by_value(module)
-
-
-@contextlib.contextmanager
-def _without_interrupts():
-	"""Ctrl-C is for this process, not for threads and processes that are started now."""
-	before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-	try:
-		yield
-	finally:
-		signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager
