@@ -7,11 +7,11 @@ import threading
 
 @contextlib.contextmanager
 def held_back(*signals):
-	"""Signals, as signal.SIGINT, come after what is done meanwhile; processes and threads that are started in it never
-	get them.
+	"""Signals, as signal.SIGINT, come after what is done meanwhile.
 
-	Python runs handlers in the main thread, whichever thread of the program gets the signal: so a mask is not
-	enough, and handlers are put off as well. In other threads only the mask counts.
+	Processes and threads that are started meanwhile never get them. Python runs handlers in the main thread,
+	whichever thread of the program gets the signal: so a mask is not enough, and handlers are put off as well.
+	In other threads only the mask counts.
 	"""
 	came, handlers = [], {}
 	if threading.current_thread() is threading.main_thread():
