@@ -1,31 +1,57 @@
 // GPL v2 or later, see LICENSE.
 // An InteractionLoop that computes all bonds together.
 #include <pkg/bonded/BondedInteractionLoop.hpp>
+#include <pkg/bonded/BondedNewtonIntegrator.hpp>
 #include <pkg/bonded/ViscousBodyDamping.hpp>
 
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
+
+#include <pkg/common/InsertionSortCollider.hpp>
+#include <pkg/dem/Ig2_Sphere_Sphere_ScGeom.hpp>
 
 #include <algorithm>
 #include <exception>
 #include <set>
 #include <sstream>
+#include <typeinfo>
 
 namespace yade {
 
 DDEM_PLUGIN((BondedInteractionLoop))
 
+bool BondedInteractionLoop::neverLooksAtBonds(const Engine& engine)
+{
+	static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator",      "BondedNewtonIntegrator",
+		                                   "ForceEngine",   "InsertionSortCollider", "BondedInteractionLoop",
+		                                   "TorqueEngine",  "DeformableTimeStepper", "DeformableEngine" };
+	return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine)
+	        || dynamic_cast<const ViscousBodyDamping*>(&engine);
+}
+
 namespace {
 
-	/// Engines that look at no bond.
-	bool neverLooksAtBonds(const Engine& engine)
+	Collider* colliderOf(const Scene& scene)
 	{
-		static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator", "InsertionSortCollider",
-			                                   "ForceEngine",   "TorqueEngine",     "DeformableEngine" };
-		return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine)
-		        || dynamic_cast<const ViscousBodyDamping*>(&engine);
+		for (const auto& engine : scene.engines)
+			if (auto* collider = dynamic_cast<Collider*>(engine.get())) return collider;
+		return nullptr;
+	}
+
+	/// How often a collider has acted, -1 where it does not tell.
+	long runsOf(const Collider* collider)
+	{
+		const auto* const sorting = dynamic_cast<const InsertionSortCollider*>(collider);
+		return sorting ? sorting->numAction : -1;
 	}
 
 } // namespace
+
+BondedInteractionLoop* BondedInteractionLoop::in(const Scene& scene)
+{
+	for (const auto& engine : scene.engines)
+		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) return loop;
+	return nullptr;
+}
 
 Law2_ScGeom_BondedPhys_MohrCoulomb* BondedInteractionLoop::law() const
 {
@@ -43,28 +69,54 @@ void BondedInteractionLoop::action()
 {
 	process.require(*scene);
 	Law* const bondLaw = law();
-	if (!bondLaw || oneByOne()) {
+	batched            = bondLaw && !oneByOne();
+	if (batched) return actBatched(*bondLaw);
+	{
 		const std::lock_guard<std::mutex> lock(busy);
 		writeBack();
+		spheres.leave();
 		held.clear();
 		known = -1;
-	} else {
-		const std::lock_guard<std::mutex> lock(busy);
-		if (!locateHeld()) {
-			collect(*bondLaw);
-			locateHeld();
-		}
 	}
-	if (bondLaw) guard.check(*scene, known >= 0);
-	if (known < 0) {
-		InteractionLoop::action();
-		throwFailure();
-		return;
+	if (bondLaw && guard.isDue(*scene, false)) guard.check(*scene);
+	InteractionLoop::action();
+	throwFailure();
+}
+
+void BondedInteractionLoop::actBatched(Law& bondLaw)
+{
+	const auto* const integrator = BondedNewtonIntegrator::in(*scene);
+	lawDispatcher->scene = physDispatcher->scene = geomDispatcher->scene = scene;
+	geomDispatcher->updateScenePtr();
+	physDispatcher->updateScenePtr();
+	lawDispatcher->updateScenePtr();
+	{
+		const std::lock_guard<std::mutex> lock(busy);
+		const bool fromState = spheres.update(*scene, integrator);
+		if (fromState || !interactionsAreKnown()) collect(bondLaw);
+	}
+	spheres.release();
+	if (guard.isDue(*scene, true)) {
+		spheres.showPicture();
+		guard.check(*scene);
+	}
+	{
+		const std::lock_guard<std::mutex> lock(busy);
+		advance(bondLaw);
 	}
 	actOnOthers();
 	throwFailure();
 	const std::lock_guard<std::mutex> lock(busy);
-	advance(*bondLaw);
+	spheres.showGuestLoads(scene->forces);
+	if (integrator && looksBetween(*scene, *this, *integrator, neverLooksAtBonds, 0.01)) {
+		spheres.moveLoads(scene->forces);
+		spheres.showToAll();
+	}
+	if (onlooker(*scene, *this, showings, neverLooksAtBonds, 0.01) != Onlooker::Nobody) {
+		showings.begin();
+		writeBack();
+		showings.end();
+	}
 }
 
 void BondedInteractionLoop::stopAfterStep(const std::string& text)
@@ -87,21 +139,33 @@ void stopAfterStep(Scene& scene, const std::string& text)
 	Omega::instance().pause();
 }
 
-bool BondedInteractionLoop::locateHeld()
+bool BondedInteractionLoop::colliderIsDue() const
 {
-	if (known != BondedPhys::bondsMade || knownScene != scene || 8 * broken > held.size()) return false;
+	Collider* const collider = colliderOf(*scene);
+	return collider && !collider->dead && (!collider->scene || collider->isActivated());
+}
+
+/// Whether the interactions of the scene are those that were collected.
+bool BondedInteractionLoop::interactionsAreKnown()
+{
 	InteractionContainer& all = *scene->interactions;
-	isHeld.assign(all.size(), 0);
-	for (const Held& h : held) {
-		if (!h.interaction) continue;
-		const auto place = size_t(h.interaction->linIx);
-		// somebody has erased it
-		if (place >= all.size() || all[place] != h.interaction || h.interaction->phys.get() != h.phys
-		    || !h.interaction->geom)
+	if (known != BondedPhys::bondsMade || knownScene != scene || all.size() != knownSize
+	    || 8 * broken > held.size())
+		return false;
+	if (const long runs = runsOf(colliderOf(*scene)); runs < 0 || runs != colliderRuns) return false;
+	if (!exposed) return true; // nobody had a chance to change any
+	const auto isThere = [&all](const shared_ptr<Interaction>& I) {
+		const auto place = size_t(I->linIx);
+		return place < all.size() && all[place] == I;
+	};
+	for (size_t j = 0; j < held.size(); j++)
+		if (const auto& I = held[j].interaction;
+		    I && (!isThere(I) || I->phys.get() != held[j].phys || !I->geom || !constantsHold(j)))
 			return false;
-		if (exposed && !constantsHold(size_t(&h - held.data()))) return false;
-		isHeld[place] = 1;
-	}
+	for (const Pair& pair : pairs)
+		if (!isThere(pair.interaction) || pair.interaction->phys.get() != pair.phys) return false;
+	for (const auto& I : others)
+		if (!isThere(I)) return false;
 	return true;
 }
 
@@ -117,21 +181,18 @@ bool BondedInteractionLoop::constantsHold(size_t bond) const
 	        && is(System::Radius1, geom.radius1) && is(System::Radius2, geom.radius2);
 }
 
-/// What InteractionLoop does, for everything but the bonds.
+/// What InteractionLoop does, for all interactions that are not followed here.
 void BondedInteractionLoop::actOnOthers()
 {
-	lawDispatcher->scene = physDispatcher->scene = geomDispatcher->scene = scene;
-	geomDispatcher->updateScenePtr();
-	physDispatcher->updateScenePtr();
-	lawDispatcher->updateScenePtr();
+	startContacts();
+	spheres.show(otherRows);
 	InteractionContainer& all          = *scene->interactions;
 	const bool            removeUnseen = all.iterColliderLastRun >= 0 && all.iterColliderLastRun == scene->iter;
-	const long            size         = long(all.size());
+	const long            size         = long(others.size());
 	std::exception_ptr    failure; // none may leave a parallel loop
 #pragma omp parallel for schedule(guided)
 	for (long i = 0; i < size; i++) {
-		if (isHeld[size_t(i)]) continue;
-		const shared_ptr<Interaction>& I = all[size_t(i)];
+		const shared_ptr<Interaction>& I = others[size_t(i)];
 		try {
 			if ((removeUnseen && !I->isReal() && I->iterLastSeen < scene->iter) || !act(I))
 				all.requestErase(I);
@@ -141,6 +202,24 @@ void BondedInteractionLoop::actOnOthers()
 		}
 	}
 	if (failure) std::rethrow_exception(failure);
+}
+
+/// Lets functors make the contact of pairs that have begun to touch; it acts from the same step on.
+void BondedInteractionLoop::startContacts()
+{
+	for (const std::int32_t p : fresh) {
+		Pair&              pair  = pairs[size_t(p)];
+		const std::int32_t first = search.firstOf(size_t(p)), second = search.secondOf(size_t(p));
+		spheres.show({ first, second });
+		spheres.addForeign(first, second);
+		if (!act(pair.interaction)) scene->interactions->requestErase(pair.interaction);
+		pair.phys = pair.interaction->isReal() ? dynamic_cast<BondedPhys*>(pair.interaction->phys.get())
+		                                       : nullptr;
+		if (!pair.phys) continue;
+		search.follow(size_t(p), true);
+		contacts.push_back(p);
+	}
+	fresh.clear();
 }
 
 /// \returns whether the interaction may stay
@@ -183,70 +262,99 @@ bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 	return functors.constLaw->go(I->geom, I->phys, I.get());
 }
 
+/// Whether pairs of spheres are those of YADE's usual geometry, which is that of the search.
+bool BondedInteractionLoop::followsPairs() const
+{
+	for (const auto& functor : geomDispatcher->functors)
+		if (const auto* geometry = dynamic_cast<const Ig2_Sphere_Sphere_ScGeom*>(functor.get()))
+			return typeid(*geometry) == typeid(Ig2_Sphere_Sphere_ScGeom)
+			        && geometry->interactionDetectionFactor == 1;
+	return false;
+}
+
 void BondedInteractionLoop::collect(Law& bondLaw)
 {
 	writeBack();
 	held.clear();
+	pairs.clear();
+	others.clear();
+	std::vector<Pair> found;
+	following = followsPairs();
 	for (const auto& I : *scene->interactions) {
-		auto* phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
+		const std::int32_t first = spheres.rowOf(I->getId1()), second = spheres.rowOf(I->getId2());
+		auto* const phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
 		if (phys && phys->bonded) held.push_back({ I, phys });
+		else if (following && first >= 0 && second >= 0 && (phys || !I->isReal()) && I->functorCache.geomExists
+		         && !spheres.isClumpMember(size_t(first)) && !spheres.isClumpMember(size_t(second)))
+			found.push_back({ I, phys, spheres.radius[size_t(first)], spheres.radius[size_t(second)] });
+		else
+			others.push_back(I);
 	}
 	// Interactions lie in an order that depends on the past; sums must not.
-	std::sort(
-	        held.begin(), held.end(), [](const Held& a, const Held& b) { return *a.interaction < *b.interaction; });
+	const auto byIds = [](const auto& a, const auto& b) { return *a.interaction < *b.interaction; };
+	std::sort(held.begin(), held.end(), byIds);
+	std::sort(found.begin(), found.end(), byIds);
 
 	system.clear();
-	particles.clear();
 	overloaded.clear();
-	std::vector<std::int32_t> place(scene->bodies->size(), -1);
-	const auto                placeOf = [&](Body::id_t id) {
-                std::int32_t& p = place[size_t(id)];
-                if (p < 0) {
-                        p = std::int32_t(particles.size());
-                        particles.push_back(id);
-                }
-                return p;
-	};
 	for (size_t j = 0; j < held.size(); j++) {
 		const Interaction& I = *held[j].interaction;
 		const BondedPhys&  phys = *held[j].phys;
-		const std::int32_t first = placeOf(I.getId1()), second = placeOf(I.getId2());
-		system.add(first, second, phys.bond(static_cast<const ScGeom&>(*I.geom)), phys.strength());
+		system.add(
+		        spheres.rowOf(I.getId1()),
+		        spheres.rowOf(I.getId2()),
+		        phys.bond(static_cast<const ScGeom&>(*I.geom)),
+		        phys.strength());
 		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
 		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress })
 		            != ddem::BondFailure::None)
 			overloaded.push_back(std::int32_t(j));
 	}
-	system.assemble(particles.size());
+	system.assemble(spheres.ids.size());
+	search.clear();
+	contacts.clear();
+	fresh.clear();
+	for (Pair& pair : found) {
+		const Interaction& I = *pair.interaction;
+		follow(pair, spheres.rowOf(I.getId1()), spheres.rowOf(I.getId2()));
+	}
+	std::set<std::int32_t> rows;
+	for (const auto& I : others)
+		for (const auto id : { I->getId1(), I->getId2() })
+			if (spheres.rowOf(id) >= 0) rows.insert(spheres.rowOf(id));
+	otherRows.assign(rows.begin(), rows.end());
+	spheres.setForeign(otherRows);
+
+	colliderRuns = runsOf(colliderOf(*scene));
+	spheres.boundsAreNew();
 	broken     = 0;
 	known      = BondedPhys::bondsMade;
 	knownScene = scene;
+	knownSize  = scene->interactions->size();
 	exposed    = true;
 }
 
-void BondedInteractionLoop::fetchPoses()
+/// Takes a pair into the search; it is followed from now on if it touches.
+void BondedInteractionLoop::follow(Pair pair, std::int32_t first, std::int32_t second)
 {
-	const long size = long(particles.size());
-#pragma omp parallel for schedule(static)
-	for (long p = 0; p < size; p++) {
-		const State&  state = *(*scene->bodies)[particles[size_t(p)]]->state;
-		double* const to    = system.pose.data() + 8 * p;
-		for (int axis = 0; axis < 3; axis++)
-			to[axis] = state.pos[axis];
-		to[4] = state.ori.w();
-		to[5] = state.ori.x();
-		to[6] = state.ori.y();
-		to[7] = state.ori.z();
+	const auto place = pairs.size();
+	search.add(first, second, pair.radius1 + pair.radius2);
+	if (pair.phys) {
+		search.follow(place, true);
+		contacts.push_back(std::int32_t(place));
 	}
+	pairs.push_back(std::move(pair));
 }
 
 void BondedInteractionLoop::advance(Law& bondLaw)
 {
-	const bool esys = bondLaw.bondConvention() == ddem::BondConvention::Esys;
-	fetchPoses();
+	const bool        esys   = bondLaw.bondConvention() == ddem::BondConvention::Esys, book = scene->trackEnergy;
+	const std::size_t before = contacts.size();
+	parted.clear();
 	if (esys) breakOverloaded(bondLaw, overloaded); // ESyS-Particle tests the loads of the last step
-	const Real stored = system.step(bondLaw.bondConvention(), scene->trackEnergy, overloaded);
-	exposed           = false;
+	double* const load   = spheres.motion.load.data();
+	const Real stored = system.step(bondLaw.bondConvention(), book, spheres.motion.pose.data(), load, overloaded);
+	exposed              = false;
 	for (const std::int32_t bond : overloaded) {
 		const auto& row = system.row(size_t(bond));
 		if (!held[size_t(bond)].interaction) continue; // broken, but one of its bodies has lost its place
@@ -258,39 +366,113 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 			if (held[size_t(bond)].interaction) lost += system.row(size_t(bond)).energy;
 		breakOverloaded(bondLaw, overloaded);
 	}
-	applyLoads();
-	if (scene->trackEnergy) bondLaw.bookBondEnergy(stored - lost);
-	if (onlooker(*scene, *this, showings, neverLooksAtBonds, 0.01) != Onlooker::Nobody) {
-		showings.begin();
-		writeBack();
-		showings.end();
+	if (book) bondLaw.bookBondEnergy(stored - lost);
+	search.find(spheres.motion.pose.data(), spheres.takeWay(), fresh);
+	advanceContacts(bondLaw, before);
+	for (const Parted& pair : parted)
+		addLoads(pair.first, pair.second, pair.loads);
+}
+
+/// One step of the contacts that there were at its beginning.
+void BondedInteractionLoop::advanceContacts(Law& bondLaw, std::size_t count)
+{
+	contactLoads.resize(count);
+	const auto massOf = [this](std::int32_t r) { return (*scene->bodies)[spheres.ids[size_t(r)]]->state->mass; };
+#pragma omp parallel for schedule(static)
+	for (std::ptrdiff_t k = 0; k < std::ptrdiff_t(count); k++) {
+		const auto  place  = size_t(contacts[size_t(k)]);
+		BondedPhys& phys   = *pairs[place].phys;
+		const bool  damped = phys.normalDamping != 0 || phys.shearDamping != 0;
+		contactLoads[size_t(k)] = bondLaw.advance(
+		        phys, motionOf(place), damped ? massOf(search.firstOf(place)) : 0,
+		        damped ? massOf(search.secondOf(place)) : 0);
+	}
+	// one thread, in order: sums do not depend on threads
+	std::size_t kept = 0;
+	for (std::size_t k = 0; k < contacts.size(); k++) {
+		const auto place = size_t(contacts[k]);
+		Pair&      pair  = pairs[place];
+		if (k < count) {
+			const ddem::ContactLoads& loads = contactLoads[k];
+			addLoads(search.firstOf(place), search.secondOf(place), loads);
+			if (scene->trackEnergy) bondLaw.bookContact(loads);
+			if (!loads.touching && !touches(place)) {
+				scene->interactions->requestErase(pair.interaction);
+				pair.phys = nullptr;
+				search.follow(place, false);
+				continue;
+			}
+		}
+		contacts[kept++] = contacts[k];
+	}
+	contacts.resize(kept);
+}
+
+/// Whether the spheres of a pair overlap; those that were bonded with an overlap may have a shorter reach than that.
+bool BondedInteractionLoop::touches(std::size_t place) const
+{
+	const double* const x1 = spheres.motion.poseOf(size_t(search.firstOf(place)));
+	const double* const x2 = spheres.motion.poseOf(size_t(search.secondOf(place)));
+	return Vector3r(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]).norm() < search.reachOf(place);
+}
+
+ddem::ContactMotion BondedInteractionLoop::motionOf(std::size_t place) const
+{
+	const auto          first = size_t(search.firstOf(place)), second = size_t(search.secondOf(place));
+	const double *const x1 = spheres.motion.poseOf(first), *const x2 = spheres.motion.poseOf(second);
+	const double *const v1 = spheres.motion.velocityOf(first), *const v2 = spheres.motion.velocityOf(second);
+	const Vector3r      branch(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]);
+	const Pair&         pair = pairs[place];
+	const Real distance = branch.norm(), share = pair.phys->contactReach / (pair.radius1 + pair.radius2);
+	return { branch / distance,
+		 distance,
+		 share * pair.radius1,
+		 share * pair.radius2,
+		 { v2[0] - v1[0], v2[1] - v1[1], v2[2] - v1[2] },
+		 { v1[4], v1[5], v1[6] },
+		 { v2[4], v2[5], v2[6] } };
+}
+
+void BondedInteractionLoop::addLoads(std::int32_t first, std::int32_t second, const ddem::ContactLoads& loads)
+{
+	if (!loads.touching) return;
+	double *const a = spheres.motion.loadOf(size_t(first)), *const b = spheres.motion.loadOf(size_t(second));
+	for (int axis = 0; axis < 3; axis++) {
+		a[axis] += loads.force[axis];
+		b[axis] -= loads.force[axis];
+		a[4 + axis] += loads.moment1[axis];
+		b[4 + axis] += loads.moment2[axis];
 	}
 }
 
 void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std::int32_t>& bonds)
 {
 	for (const std::int32_t bond : bonds) {
-		Held& h = held[size_t(bond)];
+		const auto place = size_t(bond);
+		Held&      h     = held[place];
 		if (!h.interaction) continue;
-		const auto& row = system.row(size_t(bond));
+		const auto& row = system.row(place);
 		const ddem::BondStress last = exposed ? ddem::BondStress { h.phys->normalStress, h.phys->shearStress }
 		                                      : ddem::BondStress { row.normalStress, row.shearStress };
-		exposeGeometry(size_t(bond));
-		if (!bondLaw.breakBond(*h.interaction, last)) scene->interactions->requestErase(h.interaction);
-		system.remove(size_t(bond));
+		const std::int32_t first = system.firstOf(place), second = system.secondOf(place);
+		exposeGeometry(*h.interaction);
+		spheres.show({ first, second });
+		const ddem::ContactLoads loads = bondLaw.breakBond(*h.interaction, last);
+		if (scene->trackEnergy) bondLaw.bookContact(loads);
+		parted.push_back({ first, second, loads });
+		const auto& geom = static_cast<const ScGeom&>(*h.interaction->geom);
+		Pair        pair { h.interaction, h.phys, geom.radius1, geom.radius2 };
+		if (!bondLaw.touching(*h.interaction)) {
+			scene->interactions->requestErase(h.interaction);
+			pair.phys = nullptr;
+		}
+		if (following && !spheres.isClumpMember(size_t(first)) && !spheres.isClumpMember(size_t(second)))
+			follow(pair, first, second);
+		else
+			known = -1; // its functors come from the next step on
+		system.remove(place, spheres.motion.load.data());
 		h = {};
 		broken++;
-	}
-}
-
-void BondedInteractionLoop::applyLoads()
-{
-	const long size = long(particles.size());
-#pragma omp parallel for schedule(static)
-	for (long p = 0; p < size; p++) {
-		const double* const load = system.load.data() + 6 * p;
-		scene->forces.addForce(particles[size_t(p)], Vector3r(load[0], load[1], load[2]));
-		scene->forces.addTorque(particles[size_t(p)], Vector3r(load[3], load[4], load[5]));
 	}
 }
 
@@ -298,6 +480,7 @@ void BondedInteractionLoop::expose()
 {
 	const std::lock_guard<std::mutex> lock(busy);
 	writeBack();
+	spheres.showPicture();
 }
 
 std::map<std::pair<int, int>, BondNow> BondedInteractionLoop::bondsNow() const
@@ -320,7 +503,7 @@ void BondedInteractionLoop::writeBack()
 		if (!held[j].interaction || !held[j].interaction->geom
 		    || held[j].interaction->phys.get() != held[j].phys)
 			continue;
-		exposeGeometry(j);
+		exposeGeometry(*held[j].interaction);
 		BondedPhys&    phys  = *held[j].phys;
 		const auto&    geom  = static_cast<const ScGeom&>(*held[j].interaction->geom);
 		const auto&    row   = system.row(j);
@@ -330,13 +513,15 @@ void BondedInteractionLoop::writeBack()
 		phys.normalStress    = row.normalStress;
 		phys.shearStress     = row.shearStress;
 	}
+	for (const std::int32_t p : contacts)
+		if (const auto& I = pairs[size_t(p)].interaction; I->geom) exposeGeometry(*I);
 }
 
-void BondedInteractionLoop::exposeGeometry(size_t j)
+void BondedInteractionLoop::exposeGeometry(Interaction& I) const
 {
-	auto&          geom = static_cast<ScGeom&>(*held[j].interaction->geom);
-	const double*  x1   = system.pose.data() + 8 * system.firstOf(j);
-	const double*  x2   = system.pose.data() + 8 * system.secondOf(j);
+	auto&          geom     = static_cast<ScGeom&>(*I.geom);
+	const double*  x1       = spheres.motion.poseOf(size_t(spheres.rowOf(I.getId1())));
+	const double*  x2       = spheres.motion.poseOf(size_t(spheres.rowOf(I.getId2())));
 	const Vector3r branch(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]);
 	const Real     distance = branch.norm();
 	geom.normal             = branch / distance;

@@ -2,9 +2,11 @@
 // An InteractionLoop that computes all bonds together.
 #pragma once
 
+#include <pkg/bonded/BondedSpheres.hpp>
 #include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 
+#include <pkg/bonded/kernel/SpherePairs.hpp>
 #include <pkg/ddem/Onlookers.hpp>
 
 namespace yade {
@@ -32,9 +34,13 @@ public:
 	YADE_CLASS_BASE_DOC(BondedInteractionLoop, InteractionLoop,
 		"An :yref:`InteractionLoop`, with the same arguments, that computes bonds of :yref:`BondedPhys` all "
 		"together instead of one by one: some at a time in SIMD lanes, then every particle collects the loads "
-		"of its bonds in a fixed order: what bonds do does not depend on the number of threads, bit by bit. "
-		"Contacts, and all other interactions, run through the functors as usual; their sums depend on threads "
-		"in the last digits, as in all of YADE.\n\n"
+		"of its bonds in a fixed order. Pairs of spheres that may touch are searched and followed in the same "
+		"arrays: what bonds and contacts of spheres do does not depend on the number of threads, bit by bit. "
+		"All other interactions, as those with walls, run through the functors as usual; their sums depend on "
+		"threads in the last digits, as in all of YADE.\n\n"
+		"With a :yref:`BondedNewtonIntegrator` the spheres are moved in these arrays, too. With YADE's own "
+		":yref:`NewtonIntegrator` their State is read and their loads are added to "
+		":yref:`O.forces<Omega.forces>` in every step, which takes about twice as long.\n\n"
 		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look "
 		"(end of a run, O.step, periodic engines that are due, engines of unknown kind). After O.pause() of "
 		"a run in the background they may be a few steps old until "
@@ -51,44 +57,82 @@ public:
 	);
 	// clang-format on
 
+	/// That of a scene, or null.
+	static BondedInteractionLoop* in(const Scene& scene);
+	/// Engines that look at neither bonds nor bonded spheres.
+	static bool neverLooksAtBonds(const Engine& engine);
+	/// Spheres that a BondedNewtonIntegrator moves in this step; null where there are none.
+	BondedSpheres* spheresInArrays() { return batched && spheres.movedHere() > 0 ? &spheres : nullptr; }
+	/// Whether a collider acts at the beginning of the next step and reads where spheres are.
+	bool colliderIsDue() const;
+
+	/// Held while bonds are computed, collected or written back: Python may ask at any time.
+	mutable std::mutex busy;
+
 private:
 	struct Held {
 		shared_ptr<Interaction> interaction; ///< null once the bond is broken
 		BondedPhys*             phys;
+	};
+	/// Two spheres that have no bond, but may touch.
+	struct Pair {
+		shared_ptr<Interaction> interaction;
+		BondedPhys*             phys; ///< null while they do not touch
+		Real                    radius1, radius2;
+	};
+	/// What a bond leaves in the step in which it breaks.
+	struct Parted {
+		std::int32_t       first, second; ///< rows
+		ddem::ContactLoads loads;
 	};
 	using Law = Law2_ScGeom_BondedPhys_MohrCoulomb;
 
 	Law* law() const;
 	bool oneByOne() const;
 	void throwFailure();
-	bool locateHeld();
+	void actBatched(Law& law);
+	bool interactionsAreKnown();
+	void collect(Law& law);
+	bool followsPairs() const;
 	void actOnOthers();
 	bool act(const shared_ptr<Interaction>& I);
-	void collect(Law& law);
-	void fetchPoses();
 	void advance(Law& law);
+	void advanceContacts(Law& law, std::size_t count);
+	bool touches(std::size_t pair) const;
+	void startContacts();
+	ddem::ContactMotion motionOf(size_t pair) const;
+	void addLoads(std::int32_t first, std::int32_t second, const ddem::ContactLoads& loads);
+	void follow(Pair pair, std::int32_t first, std::int32_t second);
 	void breakOverloaded(Law& law, const std::vector<std::int32_t>& bonds);
-	void applyLoads();
 	bool constantsHold(size_t bond) const;
 	void writeBack();
-	void exposeGeometry(size_t bond);
+	void exposeGeometry(Interaction& I) const;
 	[[noreturn]] void stopAtNotFinite(std::int32_t bond) const;
 
 	ddem::BondSystem                      system;
 	std::vector<Held>                     held;       ///< of every bond of the system
-	std::vector<char>                     isHeld;     ///< of every interaction of the scene
-	std::vector<Body::id_t>               particles;  ///< of every particle of the system
 	std::vector<std::int32_t>             overloaded; ///< bonds found beyond their strength in the last step
 	std::size_t                           broken = 0; ///< of the held ones
+	ddem::SpherePairs                     search;
+	std::vector<Pair>                     pairs;   ///< of the search
+	std::vector<std::int32_t>             contacts; ///< pairs that touch
+	std::vector<std::int32_t>             fresh;    ///< pairs that have begun to touch in this step
+	std::vector<ddem::ContactLoads>       contactLoads; ///< of every contact
+	std::vector<Parted>                   parted;       ///< bonds that have broken in this step
+	bool                                  following = false; ///< whether pairs of spheres are followed here
+	std::vector<shared_ptr<Interaction>>  others;   ///< interactions that YADE's functors compute
+	std::vector<std::int32_t>             otherRows; ///< spheres in them
+	BondedSpheres                         spheres;
+	bool                                  batched = false; ///< whether bonds are computed together
 	long                                  known  = -1; ///< BondedPhys::bondsMade when they were collected
 	const Scene*                          knownScene = nullptr;
+	std::size_t                           knownSize  = 0; ///< interactions of the scene
+	long                                  colliderRuns = -1;
 	bool                                  exposed = true;
 	BondedStepGuard                       guard;
 	std::mutex                            failing;  ///< held for the text
 	std::string                           stopping; ///< what stops the run after this step
 	SingleProcess                         process;
-	mutable std::mutex                    busy;            ///< held while bonds are computed, collected or written
-	                                                       ///< back: Python may ask at any time
 	Showings                              showings;
 };
 REGISTER_SERIALIZABLE(BondedInteractionLoop);

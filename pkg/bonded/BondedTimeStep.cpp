@@ -187,16 +187,19 @@ void BondedStepGuard::see(const Scene& scene, const Interaction& I)
 	if (scene.dt > ddem::stableStep(masses, { spring })) above = true;
 }
 
-void BondedStepGuard::check(const Scene& scene, bool told)
+bool BondedStepGuard::isDue(const Scene& scene, bool told) const
 {
-	const long made = BondedPhys::bondsMade, since = scene.iter - lastLook;
-	const bool same = known == &scene && bonds == made && since >= 0 && scene.dt <= stable;
-	const bool soon = since >= contactInterval && (formed || !told);
-	if (same && !above && !soon && since < lookInterval) return;
+	const long since = scene.iter - lastLook;
+	const bool same = known == &scene && bonds == BondedPhys::bondsMade && since >= 0 && scene.dt <= stable;
+	return !same || above || (since >= contactInterval && (formed || !told)) || since >= lookInterval;
+}
+
+void BondedStepGuard::check(const Scene& scene)
+{
 	const BondedStableStep bound = bondedStableStep(scene);
 	formed = above = false;
 	known          = &scene;
-	bonds          = made;
+	bonds          = BondedPhys::bondsMade;
 	lastLook       = scene.iter;
 	stable         = bound.step;
 	if (scene.dt <= bound.step) return;

@@ -31,12 +31,13 @@ BondedStableStep bondedStableStep(const Scene& scene);
 /// Stops a run whose time step is above the bound.
 class BondedStepGuard {
 public:
-	/** To be called in every step. Looks at the scene where O.dt has grown beyond the last bound, where bonds are
-	 * new, soon after contacts have formed, and now and then.
+	/** Whether it is time to \ref check; to be asked in every step. That is where O.dt has grown beyond the last
+	 * bound, where bonds are new, soon after contacts have formed, and now and then.
 	 * \param told whether contacts that form are told by \ref see
-	 * \throws std::runtime_error naming the pair of bodies
 	 */
-	void check(const Scene& scene, bool told);
+	bool isDue(const Scene& scene, bool told) const;
+	/// Compares O.dt with the bound of the scene. \throws std::runtime_error naming the pair of bodies
+	void check(const Scene& scene);
 	/// A contact has formed; may be called by several threads.
 	void see(const Scene& scene, const Interaction& I);
 

@@ -47,7 +47,7 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 	if (!phys.bonded) return advanceContact(*I);
 	if (esys) { // ESyS-Particle tests the loads of the last step
 		const ddem::BondStress last { phys.normalStress, phys.shearStress };
-		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return breakBond(*I, last);
+		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return replaceBond(*I, last);
 	}
 	const State &state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
 	const Vector3r         branch = branchOf(*I), normal = branch.normalized();
@@ -56,7 +56,7 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 	        ddem::rotation(state1.ori), ddem::rotation(state2.ori));
 	const ddem::BondStress stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
 	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None)
-		return breakBond(*I, stress);
+		return replaceBond(*I, stress);
 
 	const Vector3r force = ddem::eigenVector(loads.force);
 	phys.normalForce     = -force.dot(normal) * normal;
@@ -68,7 +68,13 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr
 	return true;
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::BondStress& stress)
+bool Law2_ScGeom_BondedPhys_MohrCoulomb::replaceBond(Interaction& I, const ddem::BondStress& stress)
+{
+	applyContact(I, breakBond(I, stress));
+	return touching(I);
+}
+
+ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::BondStress& stress)
 {
 	const auto&           geom   = static_cast<const ScGeom&>(*I.geom);
 	auto&                 phys   = static_cast<BondedPhys&>(*I.phys);
@@ -101,8 +107,7 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::B
 	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped
 	        + 0.5 * scene->dt * (bondPower - contactPower);
 	record(parted);
-	applyContact(I, contact);
-	return touching(I);
+	return contact;
 }
 
 bool Law2_ScGeom_BondedPhys_MohrCoulomb::touching(const Interaction& I) const
@@ -136,26 +141,32 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Inte
 
 	const ddem::ContactMotion motion { normal,        distance,     radius1, radius2, velocity2 - velocity1,
 		                           state1.angVel, state2.angVel };
-	ddem::ContactMemory memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
-		                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
-	ddem::ContactLoads        loads = esys
-	               ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
-	               : ddem::contactLoads(
-	                       { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
-	                       phys.contactDamping(
-	                               moverOf(*scene, I.getId1()).state->mass,
-	                               moverOf(*scene, I.getId2()).state->mass));
+	ddem::ContactLoads        loads = advance(
+                phys, motion, moverOf(*scene, I.getId1()).state->mass, moverOf(*scene, I.getId2()).state->mass);
 	if (!sphere1) loads.moment1 = arm1.cross(loads.force);
 	if (!sphere2) loads.moment2 = -arm2.cross(loads.force);
-	phys.contactNormal  = memory.normal;
-	phys.contactShear   = memory.shear;
-	phys.contactForce   = memory.force;
-	phys.contactEnergy  = memory.energy;
-	phys.sliding        = memory.sliding;
-	phys.viscousNormal  = memory.viscousNormal;
-	phys.viscousShear   = memory.viscousShear;
-	phys.normalForce    = -loads.force.dot(normal) * normal;
-	phys.shearForce     = -loads.force - phys.normalForce;
+	return loads;
+}
+
+ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::advance(
+        BondedPhys& phys, const ddem::ContactMotion& motion, Real mass1, Real mass2) const
+{
+	ddem::ContactMemory memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
+		                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
+	const ddem::ContactLoads loads = esys
+	        ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
+	        : ddem::contactLoads(
+	                { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
+	                phys.contactDamping(mass1, mass2));
+	phys.contactNormal = memory.normal;
+	phys.contactShear  = memory.shear;
+	phys.contactForce  = memory.force;
+	phys.contactEnergy = memory.energy;
+	phys.sliding       = memory.sliding;
+	phys.viscousNormal = memory.viscousNormal;
+	phys.viscousShear  = memory.viscousShear;
+	phys.normalForce   = -loads.force.dot(motion.normal) * motion.normal;
+	phys.shearForce    = -loads.force - phys.normalForce;
 	return loads;
 }
 
@@ -177,11 +188,14 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(
 void Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
 {
 	if (loads.touching) applyLoads(I, loads.force, loads.moment1, loads.moment2);
-	if (scene->trackEnergy) {
-		energy.add(*scene->energy, BondedEnergy::ContactElastic, loads.energy);
-		energy.add(*scene->energy, BondedEnergy::Friction, loads.dissipated);
-		if (loads.damped != 0) energy.add(*scene->energy, BondedEnergy::ContactDamping, loads.damped);
-	}
+	if (scene->trackEnergy) bookContact(loads);
+}
+
+void Law2_ScGeom_BondedPhys_MohrCoulomb::bookContact(const ddem::ContactLoads& loads)
+{
+	energy.add(*scene->energy, BondedEnergy::ContactElastic, loads.energy);
+	energy.add(*scene->energy, BondedEnergy::Friction, loads.dissipated);
+	if (loads.damped != 0) energy.add(*scene->energy, BondedEnergy::ContactDamping, loads.damped);
 }
 
 void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bond)

@@ -21,9 +21,16 @@ public:
 	{
 		return esys ? ddem::BondConvention::Esys : ddem::BondConvention::Consistent;
 	}
-	/// Replaces a bond that has failed under these stresses by a contact, which acts at once,
-	/// and records it. \returns whether the spheres touch
-	bool breakBond(Interaction& I, const ddem::BondStress& stress);
+	/// Replaces a bond that has failed under these stresses by a contact and records it.
+	/// \returns the contact's loads in this step, for the caller to apply and to book
+	ddem::ContactLoads breakBond(Interaction& I, const ddem::BondStress& stress);
+	/// One step of a contact. \returns its loads, for the caller to apply and to book
+	ddem::ContactLoads
+	advance(BondedPhys& phys, const ddem::ContactMotion& motion, Real mass1, Real mass2) const;
+	/// Whether the pair still touches.
+	bool touching(const Interaction& I) const;
+	/// Adds the energies of a contact to the book.
+	void bookContact(const ddem::ContactLoads& loads);
 	/// Adds stored energy to the book.
 	void bookBondEnergy(Real stored) { energy.add(*scene->energy, BondedEnergy::BondElastic, stored); }
 	void postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&);
@@ -112,9 +119,10 @@ public:
 private:
 	/// One step of the contact that a pair has instead of a bond. \returns whether it may stay
 	bool advanceContact(Interaction& I);
+	/// Breaks a bond and lets the contact act at once. \returns whether it may stay
+	bool replaceBond(Interaction& I, const ddem::BondStress& stress);
 	/// Loads of a contact, of any geometry, and what it remembers of them.
 	ddem::ContactLoads contactLoadsOf(const Interaction& I);
-	bool touching(const Interaction& I) const;
 	Vector3r branchOf(const Interaction& I) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);

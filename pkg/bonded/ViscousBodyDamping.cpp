@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
 // Viscous damping of translation and rotation of every particle.
+#include <pkg/bonded/BondedNewtonIntegrator.hpp>
 #include <pkg/bonded/ViscousBodyDamping.hpp>
 #include <pkg/bonded/kernel/BondDamping.hpp>
 
@@ -68,28 +69,36 @@ const NewtonIntegrator& ViscousBodyDamping::checkedIntegrator() const
 
 void ViscousBodyDamping::action()
 {
-	const int                 mask = checkedIntegrator().mask;
+	const NewtonIntegrator&   integrator = checkedIntegrator();
+	const int                 mask       = integrator.mask;
 	const ddem::ViscousDamper linear(viscosity, scene->dt), angular(rotationalViscosity, scene->dt);
 	const auto&               bodies = *scene->bodies;
-	const long                size   = long(bodies.size());
+	const auto* const         arrays = dynamic_cast<const BondedNewtonIntegrator*>(&integrator);
+	BondedSpheres* const      moved  = arrays ? arrays->spheres() : nullptr;
+	const long                size   = long(moved ? moved->others().size() : bodies.size());
 	const bool                book   = scene->trackEnergy;
 	Real                      loss   = 0;
 	scene->forces.sync();
 #pragma omp parallel for schedule(static) reduction(+ : loss)
-	for (long id = 0; id < size; id++) {
-		const Body* body = bodies[int(id)].get();
+	for (long i = 0; i < size; i++) {
+		const Body::id_t id   = moved ? moved->others()[size_t(i)] : Body::id_t(i);
+		const Body*      body = bodies[id].get();
 		if (!body || body->isClumpMember() || body->isClump() || (mask > 0 && !body->maskCompatible(mask)))
 			continue;
 		const State& state = *body->state;
 		if (state.blockedDOFs == State::DOF_ALL) continue;
-		const Vector3r force = scene->forces.getForce(int(id)), torque = scene->forces.getTorque(int(id)),
+		const Vector3r force = scene->forces.getForce(id), torque = scene->forces.getTorque(id),
 		               mass = Vector3r::Constant(state.mass);
-		scene->forces.addForceUnsynced(int(id), dragLoad(linear, state.vel, force, mass, state, false));
+		scene->forces.addForceUnsynced(id, dragLoad(linear, state.vel, force, mass, state, false));
 		scene->forces.addTorqueUnsynced(
-		        int(id), dragLoad(angular, state.angVel, torque, state.inertia, state, true));
+		        id, dragLoad(angular, state.angVel, torque, state.inertia, state, true));
 		if (book)
 			loss += dragLoss(linear, state.vel, force, mass, state, false)
 			        + dragLoss(angular, state.angVel, torque, state.inertia, state, true);
+	}
+	if (moved) {
+		moved->takeForces(scene->forces);
+		loss += moved->motion.drag(viscosity, rotationalViscosity, scene->dt, book);
 	}
 	if (!book) return;
 	// Half of this step's loss comes after the present positions; see RampedTranslationEngine.

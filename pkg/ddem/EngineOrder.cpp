@@ -20,6 +20,7 @@ namespace {
 	{
 		static const std::set<std::string> names { "ForceResetter",
 			                                   "NewtonIntegrator",
+			                                   "BondedNewtonIntegrator",
 			                                   "InsertionSortCollider",
 			                                   "InteractionLoop",
 			                                   "BondedInteractionLoop",

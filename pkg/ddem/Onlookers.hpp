@@ -34,9 +34,15 @@ private:
  * \param neverLooks engines that are known not to look
  * \param clockSlack how long before it is due an engine counts that acts by the clock [s]: while others act, it may
  * become so; infinity: such an engine always counts
+ * \param until the engine, before self in O.engines, whose turn ends the time in question; null: self's next turn
  */
 Onlooker onlooker(
         const Scene& scene, const Engine& self, const Showings& showings, bool (*neverLooks)(const Engine&),
+        Real clockSlack, const Engine* until = nullptr);
+
+/// Whether anybody may look between the turns of two engines in the same step.
+bool looksBetween(
+        const Scene& scene, const Engine& first, const Engine& second, bool (*neverLooks)(const Engine&),
         Real clockSlack);
 
 } // namespace yade

@@ -18,7 +18,7 @@ Crush a prism of bonded spheres::
 		),
 		*platens.engines,
 		ViscousBodyDamping(),
-		NewtonIntegrator(damping=0),
+		BondedNewtonIntegrator(damping=0),
 	]
 	O.dt = ddem.bonded.time_step(0.8)
 	O.run(5000, True)
@@ -33,12 +33,12 @@ import numpy as np
 
 from yade import (
 	Bo1_Box_Aabb, Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat,
-	ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom,
-	Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
-	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Ip2_FrictMat_BondedMat_BondedPhys,
-	Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion,
-	Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O, RampedTranslationEngine, Sphere, Vector3,
-	ViscousBodyDamping, utils
+	BondedNewtonIntegrator, ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
+	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
+	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
+	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_MohrCoulomb,
+	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O,
+	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter
@@ -402,7 +402,7 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 		),
 		*(platens.engines if platens else []),
 		*damping,
-		NewtonIntegrator(damping=0, label="newton"),
+		BondedNewtonIntegrator(damping=0, label="newton"),
 	]
 
 
@@ -434,7 +434,8 @@ def check():
 	:raises RuntimeError: an engine is missing or in the wrong place.
 	:raises ValueError: a material was changed to bad parameters, or O.dt is above the critical step.
 	"""
-	names = ["InteractionLoop" if isinstance(e, InteractionLoop) else type(e).__name__ for e in O.engines]
+	kinds = (InteractionLoop, NewtonIntegrator)
+	names = [next((k.__name__ for k in kinds if isinstance(e, k)), type(e).__name__) for e in O.engines]
 	for name, purpose in (
 		("ForceResetter", "forces would add up"),
 		("InsertionSortCollider", "fragments would pass through each other"),

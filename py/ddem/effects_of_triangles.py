@@ -31,8 +31,9 @@ _FIELDS = (
 _BOOK = {"strain", "lastStrain", "lastStress", "plasticDissipation", "damageDissipation", "stiffeningEnergy"}
 #: engines that add no forces to triangles, as in EngineOrder.cpp
 _QUIET = {
-	"ForceResetter", "NewtonIntegrator", "InsertionSortCollider", "InteractionLoop", "BondedInteractionLoop",
-	"ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper", "DeformableEngine"
+	"ForceResetter", "NewtonIntegrator", "BondedNewtonIntegrator", "InsertionSortCollider", "InteractionLoop",
+	"BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper",
+	"DeformableEngine"
 }
 
 

@@ -21,6 +21,7 @@ class EnergyBalance:
 
 	NewtonIntegrator books the kinetic energy of half a step ago, while all else belongs to the present positions;
 	here it is the mean of half a step ago and half a step ahead, which is of second order in the time step.
+	BondedNewtonIntegrator books that of the present positions itself, without an error.
 	"""
 
 	def __init__(self):
@@ -34,8 +35,9 @@ class EnergyBalance:
 	def parts(self):
 		"""All entries [J] by name, the kinetic energy at the present time."""
 		entries = dict(O.energy.items())
-		engines = [type(e) for e in O.engines]
-		if "kinetic" in entries and NewtonIntegrator in engines and DeformableEngine not in engines:
+		behind = any(isinstance(e, NewtonIntegrator) and not getattr(e, "moved", 0) for e in O.engines)
+		triangles = any(isinstance(e, DeformableEngine) for e in O.engines)
+		if "kinetic" in entries and behind and not triangles:
 			entries["kinetic"] = 0.5 * (entries["kinetic"] + utils.kineticEnergy())
 		return entries
 

@@ -41,6 +41,7 @@ def specimen(convention="consistent", together=True, **material):
 			]
 		)
 		O.engines = [e if not isinstance(e, InteractionLoop) else InteractionLoop(*functors) for e in O.engines]
+		O.engines = O.engines[:-1] + [NewtonIntegrator(damping=0)]
 	O.trackEnergy = True
 	O.dt = bonded.time_step(0.5)
 	return sample, platens
@@ -92,6 +93,8 @@ def test_equals_the_functors(convention):
 	assert all_[4] == pytest.approx(one[4], abs=1e-5 * np.abs(one[4]).max())
 	assert all_[6] == pytest.approx(one[6], rel=1e-6)
 	for entry, value in one[7].items():
+		if entry == "kinetic":  # of another instant, see BondedNewtonIntegrator
+			continue
 		assert all_[7][entry] == pytest.approx(value, rel=1e-4, abs=1e-9 * one[7]["bondElastic"]), entry
 
 

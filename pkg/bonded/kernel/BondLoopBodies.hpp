@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pkg/bonded/kernel/BondLoops.hpp>
+#include <pkg/bonded/kernel/SphereMotion.hpp>
 #include <pkg/ddem/kernel/algebra/Lanes.hpp>
 
 namespace yade::ddem {
@@ -21,10 +22,10 @@ bool bondLoop(const BondArrays& a, std::size_t begin, std::size_t end)
 		};
 
 		Number position1[4], orientation1[4], position2[4], orientation2[4];
-		L::gatherRows(a.pose, 8, a.first + j, position1);
-		L::gatherRows(a.pose + 4, 8, a.first + j, orientation1);
-		L::gatherRows(a.pose, 8, a.second + j, position2);
-		L::gatherRows(a.pose + 4, 8, a.second + j, orientation2);
+		L::gatherRows(a.pose, sphereRow, a.first + j, position1);
+		L::gatherRows(a.pose + 4, sphereRow, a.first + j, orientation1);
+		L::gatherRows(a.pose, sphereRow, a.second + j, position2);
+		L::gatherRows(a.pose + 4, sphereRow, a.second + j, orientation2);
 		const SpaceVector<Number> branch { position2[0] - position1[0], position2[1] - position1[1],
 			                           position2[2] - position1[2] };
 		const SpaceRotation<Number> q1 { orientation1[0], orientation1[1], orientation1[2], orientation1[3] };

@@ -1,5 +1,6 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/bonded/kernel/BondLoopBodies.hpp>
+#include <pkg/bonded/kernel/SphereMotion.hpp>
 
 #include <limits>
 #include <stdexcept>
@@ -92,21 +93,20 @@ void BondSystem::assemble(std::size_t particleCount)
 		        constants[k].begin() + std::ptrdiff_t(count), constants[k].end(),
 		        std::numeric_limits<double>::infinity());
 	rows.assign(length, Row {});
-	pose.assign(8 * particleCount, 0.);
-	load.assign(6 * particleCount, 0.);
 }
 
-double BondSystem::step(BondConvention convention, bool energy, std::vector<std::int32_t>& overloaded)
+double BondSystem::step(
+        BondConvention convention, bool energy, const double* pose, double* load, std::vector<std::int32_t>& overloaded)
 {
 	overloaded.clear();
-	BondArrays arrays { first.data(), second.data(), pose.data(), {}, reinterpret_cast<double*>(rows.data()) };
+	BondArrays arrays { first.data(), second.data(), pose, {}, reinterpret_cast<double*>(rows.data()) };
 	for (std::size_t k = 0; k < ConstantCount; k++)
 		arrays.constant[k] = constants[k].data();
 	const BondLoop    loop   = selectBondLoop(convention);
 	const auto chunks = std::ptrdiff_t((count + bondsPerChunk - 1) / bondsPerChunk),
 	           all = std::ptrdiff_t(particles());
-	std::vector<char> over(std::size_t(chunks), 0);
-	std::vector<double> stored(std::size_t(chunks), 0.);
+	over.assign(std::size_t(chunks), 0);
+	stored.assign(std::size_t(chunks), 0.);
 #pragma omp parallel
 	{
 #pragma omp for schedule(static)
@@ -120,7 +120,7 @@ double BondSystem::step(BondConvention convention, bool energy, std::vector<std:
 		}
 #pragma omp for schedule(static, particlesPerChunk)
 		for (std::ptrdiff_t p = 0; p < all; p++)
-			collect(std::size_t(p));
+			collect(std::size_t(p), load);
 	}
 	double sum = 0;
 	for (std::ptrdiff_t c = 0; c < chunks; c++) {
@@ -139,18 +139,18 @@ double BondSystem::step(BondConvention convention, bool energy, std::vector<std:
 	return sum;
 }
 
-void BondSystem::remove(std::size_t bond)
+void BondSystem::remove(std::size_t bond, double* load)
 {
 	// computed as before, in its batch, but without effect
 	for (const Constant k : { Normal, Shear, Bending, Torsion })
 		constants[k][bond] = 0;
 	constants[Cohesion][bond] = constants[TensionLimit][bond] = std::numeric_limits<double>::infinity();
 	rows[bond]                                                = Row {};
-	collect(std::size_t(first[bond]));
-	collect(std::size_t(second[bond]));
+	collect(std::size_t(first[bond]), load);
+	collect(std::size_t(second[bond]), load);
 }
 
-void BondSystem::collect(std::size_t particle)
+void BondSystem::collect(std::size_t particle, double* load) const
 {
 	SpaceVector<double> force { 0, 0, 0 }, moment { 0, 0, 0 };
 	for (std::size_t k = collectStart[particle]; k < collectStart[particle + 1]; k++) {
@@ -163,13 +163,13 @@ void BondSystem::collect(std::size_t particle)
 			moment = moment + r.moment2;
 		}
 	}
-	double* const to = load.data() + 6 * particle;
+	double* const to = load + sphereRow * std::ptrdiff_t(particle);
 	to[0]            = force.x;
 	to[1]            = force.y;
 	to[2]            = force.z;
-	to[3]            = moment.x;
-	to[4]            = moment.y;
-	to[5]            = moment.z;
+	to[4]            = moment.x;
+	to[5]            = moment.y;
+	to[6]            = moment.z;
 }
 
 } // namespace yade::ddem

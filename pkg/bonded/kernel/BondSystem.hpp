@@ -62,7 +62,7 @@ public:
 	};
 
 	void clear();
-	/// \param first,second places of the particles in \ref pose
+	/// \param first,second rows of the particles
 	void add(std::int32_t first, std::int32_t second, const Bond& bond, const MohrCoulomb& strength);
 	/// To be called once all bonds have been added. \throws std::logic_error if a bond names
 	/// a particle that does not exist
@@ -71,22 +71,20 @@ public:
 	std::size_t size() const { return count; }
 	std::size_t particles() const { return collectStart.size() - 1; }
 
-	/// Position x, y, z and orientation w, x, y, z of every particle, to be set before each step;
-	/// the fourth of eight numbers is not used.
-	std::vector<double> pose;
-	/// Force and moment about the centre that the bonds put on every particle, six numbers [N, N·m].
-	std::vector<double> load;
-
 	/** Computes all bonds and collects their loads.
+	 * \param pose rows of the particles, see SphereMotion
+	 * \param load rows that get the loads of every particle's bonds, see SphereMotion
 	 * \param overloaded gets the bonds beyond their strength or with stresses that are not a number, in order;
 	 * their loads are included
 	 * \param energy whether to add up the stored energy
 	 * \returns stored energy [J], 0 unless asked for
 	 */
-	double step(BondConvention convention, bool energy, std::vector<std::int32_t>& overloaded);
+	double
+	step(BondConvention convention, bool energy, const double* pose, double* load,
+	     std::vector<std::int32_t>& overloaded);
 
 	/// Takes a bond out for good; its particles' loads of this step no longer contain it.
-	void remove(std::size_t bond);
+	void remove(std::size_t bond, double* load);
 
 	const Row&   row(std::size_t bond) const { return rows[bond]; }
 	double       constant(Constant which, std::size_t bond) const { return constants[which][bond]; }
@@ -94,13 +92,15 @@ public:
 	std::int32_t secondOf(std::size_t bond) const { return second[bond]; }
 
 private:
-	void collect(std::size_t particle);
+	void collect(std::size_t particle, double* load) const;
 
 	std::size_t                                    count = 0;
 	/// like all constants padded to whole SIMD batches once assembled
 	std::vector<std::int32_t>                      first, second;
 	std::array<std::vector<double>, ConstantCount> constants;
 	std::vector<Row>                               rows;
+	std::vector<char>                              over;   ///< of every chunk: has an overloaded bond
+	std::vector<double>                            stored; ///< of every chunk [J]
 	std::vector<std::size_t>                       collectStart { 0 };
 	std::vector<std::int32_t>                      collectRow; ///< 2 · bond + (0: as first, 1: as second particle)
 };

@@ -2,6 +2,8 @@
 // What the bonds' mathematics costs, without YADE around it.
 #include "bond_samples.hpp"
 
+#include <pkg/bonded/kernel/SphereMotion.hpp>
+
 #include <benchmark/benchmark.h>
 
 #include <random>
@@ -29,15 +31,16 @@ void allBonds(benchmark::State& state, BondConvention convention)
 			        { 1e15, 1 });
 		}
 	system.assemble(std::size_t(particles));
+	std::vector<double> pose(std::size_t(sphereRow) * std::size_t(particles)), load(pose.size());
 	for (std::int32_t i = 0; i < particles; i++) {
 		const Vector     x = Vector(2e-3 * i, 0, 0) + 1e-6 * vector();
 		const Quaternion q(Eigen::AngleAxisd(1e-3, vector().normalized()));
-		const double     pose[8] = { x.x(), x.y(), x.z(), 0, q.w(), q.x(), q.y(), q.z() };
-		std::copy_n(pose, 8, system.pose.begin() + 8 * i);
+		const double     row[8] = { x.x(), x.y(), x.z(), 0, q.w(), q.x(), q.y(), q.z() };
+		std::copy_n(row, 8, pose.begin() + 8 * i);
 	}
 	std::vector<std::int32_t> overloaded;
 	for (auto _ : state) {
-		benchmark::DoNotOptimize(system.step(convention, false, overloaded));
+		benchmark::DoNotOptimize(system.step(convention, false, pose.data(), load.data(), overloaded));
 		benchmark::ClobberMemory();
 	}
 	state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(system.size()));

@@ -36,7 +36,9 @@ template <> struct Lanes<double> {
 	{
 		std::copy_n(from + stride * *index, 4, to);
 	}
-	/// Four numbers of each of successive rows.
+	static double                largest(double value) { return value; }
+	/// Four numbers of each of successive rows, which are `stride` numbers apart.
+	static void loadRows(const double* from, std::ptrdiff_t, double (&to)[4]) { std::copy_n(from, 4, to); }
 	static void storeRows(double* to, std::ptrdiff_t, const double (&from)[4]) { std::copy_n(from, 4, to); }
 };
 
@@ -71,6 +73,13 @@ template <class Arch> struct Lanes<xsimd::batch<double, Arch>> {
 	{
 		for (int lane = 0; lane < 4; lane++)
 			to[lane] = Batch(_mm256_loadu_pd(from + stride * index[lane]));
+		transpose(to);
+	}
+	static double largest(const Batch& value) { return xsimd::reduce_max(value); }
+	static void   loadRows(const double* from, std::ptrdiff_t stride, Batch (&to)[4])
+	{
+		for (int lane = 0; lane < 4; lane++)
+			to[lane] = Batch(_mm256_loadu_pd(from + lane * stride));
 		transpose(to);
 	}
 	static void storeRows(double* to, std::ptrdiff_t stride, const Batch (&from)[4])

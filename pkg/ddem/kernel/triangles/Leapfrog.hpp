@@ -2,6 +2,7 @@
 // Leapfrog motion of points and spins, with the effects a scene calls for picked at compile time.
 #pragma once
 
+#include <pkg/ddem/kernel/algebra/LocalDamping.hpp>
 #include <pkg/ddem/kernel/triangles/Motion.hpp>
 
 namespace yade::ddem {
@@ -15,13 +16,6 @@ namespace MotionEffects {
 		        | (settings.gravity.x != 0 || settings.gravity.y != 0 ? unsigned(Gravity) : 0)
 		        | (settings.damping != 0 ? unsigned(Damping) : 0) | (settings.energy ? unsigned(Energy) : 0);
 	}
-}
-
-/// Factor by which Cundall's local damping scales an acceleration, as in NewtonIntegrator (cundallDamp2nd).
-inline double localDamping(double damping, double acceleration, double velocity, double dt)
-{
-	const double power = acceleration * (velocity + 0.5 * dt * acceleration);
-	return power > 0 ? 1 - damping : (power < 0 ? 1 + damping : 1);
 }
 
 /// One degree of freedom: returns its new velocity and books its work. inverseMass 0 keeps the velocity.
