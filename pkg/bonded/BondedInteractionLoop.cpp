@@ -67,6 +67,7 @@ bool BondedInteractionLoop::oneByOne() const
 
 void BondedInteractionLoop::action()
 {
+	pythonLooks::end(*this);
 	process.require(*scene);
 	Law* const bondLaw = law();
 	batched            = bondLaw && !oneByOne();
@@ -92,6 +93,7 @@ void BondedInteractionLoop::actBatched(Law& bondLaw)
 	lawDispatcher->updateScenePtr();
 	{
 		const std::lock_guard<std::mutex> lock(busy);
+		poseAtLook.clear();
 		const bool fromState = spheres.update(*scene, integrator);
 		if (fromState || !interactionsAreKnown()) collect(bondLaw);
 	}
@@ -112,7 +114,13 @@ void BondedInteractionLoop::actBatched(Law& bondLaw)
 		spheres.moveLoads(scene->forces);
 		spheres.showToAll();
 	}
-	if (onlooker(*scene, *this, showings, neverLooksAtBonds, 0.01) != Onlooker::Nobody) {
+	const Onlooker who  = onlooker(*scene, *this, showings, neverLooksAtBonds, 0.01);
+	const bool     lags = who == Onlooker::Python && pythonLooks::watched();
+	if (lags) {
+		poseAtLook = spheres.motion.pose;
+		pythonLooks::begin(*this);
+	}
+	if (lags ? showings.due() : who != Onlooker::Nobody) {
 		showings.begin();
 		writeBack();
 		showings.end();
@@ -483,15 +491,43 @@ void BondedInteractionLoop::expose()
 	spheres.showPicture();
 }
 
-std::map<std::pair<int, int>, BondNow> BondedInteractionLoop::bondsNow() const
+/// Where Python reads or writes what belongs to an interaction, while it looks. Without a lock: other threads of Python
+/// wait for Python's own, and action() begins with the end of the look.
+void BondedInteractionLoop::showAll() { writeBack(); }
+
+boost::python::object BondedInteractionLoop::sphereArray(const boost::python::object& ids, const std::string& name)
 {
-	const std::lock_guard<std::mutex>      lock(busy);
-	std::map<std::pair<int, int>, BondNow> result;
-	for (size_t j = 0; j < held.size(); j++)
-		if (const auto& I = held[j].interaction)
-			result[std::minmax(I->getId1(), I->getId2())]
-			        = { system.row(j).normalStress, system.row(j).shearStress, held[j].phys->bondRadius };
+	const auto        current = Omega::instance().getScene();
+	auto* const       loop    = in(*current);
+	return yade::sphereArray(*current, loop ? &loop->spheres : nullptr, ids, name);
+}
+
+std::vector<BondNow> BondedInteractionLoop::bondsNow() const
+{
+	const std::lock_guard<std::mutex> lock(busy);
+	std::vector<BondNow>              result;
+	result.reserve(held.size());
+	for (size_t j = 0; j < held.size(); j++) {
+		const auto& I = held[j].interaction;
+		if (!I || !I->geom) continue;
+		const auto&    row   = system.row(j);
+		const Vector3r force = ddem::eigenVector(row.force),
+		               along = exposed ? static_cast<const ScGeom&>(*I->geom).normal
+		                               : Vector3r((placeOf(I->getId2()) - placeOf(I->getId1())).normalized());
+		const Real     axial = force.dot(along); // on the first body: tension pulls it along the branch
+		result.push_back(
+		        { I->getId1(), I->getId2(), row.normalStress, row.shearStress, held[j].phys->bondRadius, axial,
+		          (force - axial * along).norm() });
+	}
 	return result;
+}
+
+/// Where a sphere was when its bonds were computed.
+Vector3r BondedInteractionLoop::placeOf(Body::id_t id) const
+{
+	const auto&         pose = poseAtLook.empty() ? spheres.motion.pose : poseAtLook;
+	const double* const x    = pose.data() + ddem::sphereRow * spheres.rowOf(id);
+	return { x[0], x[1], x[2] };
 }
 
 void BondedInteractionLoop::writeBack()
@@ -520,13 +556,11 @@ void BondedInteractionLoop::writeBack()
 void BondedInteractionLoop::exposeGeometry(Interaction& I) const
 {
 	auto&          geom     = static_cast<ScGeom&>(*I.geom);
-	const double*  x1       = spheres.motion.poseOf(size_t(spheres.rowOf(I.getId1())));
-	const double*  x2       = spheres.motion.poseOf(size_t(spheres.rowOf(I.getId2())));
-	const Vector3r branch(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]);
+	const Vector3r branch   = placeOf(I.getId2()) - placeOf(I.getId1());
 	const Real     distance = branch.norm();
 	geom.normal             = branch / distance;
 	geom.penetrationDepth   = geom.radius1 + geom.radius2 - distance;
-	geom.contactPoint = Vector3r(x1[0], x1[1], x1[2]) + (geom.radius1 - geom.penetrationDepth / 2) * geom.normal;
+	geom.contactPoint       = placeOf(I.getId1()) + (geom.radius1 - geom.penetrationDepth / 2) * geom.normal;
 }
 
 void BondedInteractionLoop::stopAtNotFinite(std::int32_t bond) const

@@ -2,6 +2,7 @@
 // An InteractionLoop that computes all bonds together.
 #pragma once
 
+#include <pkg/bonded/BondedArrays.hpp>
 #include <pkg/bonded/BondedSpheres.hpp>
 #include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
@@ -11,27 +12,28 @@
 
 namespace yade {
 
-/// What is known of a bond that holds.
-struct BondNow {
-	Real normalStress, shearStress, radius;
-};
-
-class BondedInteractionLoop : public InteractionLoop {
+class BondedInteractionLoop : public InteractionLoop, private LaggingState {
 public:
-	virtual ~BondedInteractionLoop() = default;
+	virtual ~BondedInteractionLoop() { pythonLooks::end(*this); }
 	void action() override;
 
 	/// Brings geometry and physics of the bonds' interactions up to the last step.
 	void expose();
-	/// Bonds that hold, by the ids of their bodies, as of the last step; safe while a run goes on.
-	/// Empty where bonds are computed one by one.
-	std::map<std::pair<int, int>, BondNow> bondsNow() const;
+	/// Bonds that hold, as of the last step; safe while a run goes on. Empty where bonds are computed one by one.
+	std::vector<BondNow> bondsNow() const;
+	/// One quantity of spheres of the current scene, see yade::sphereArray.
+	static boost::python::object sphereArray(const boost::python::object& ids, const std::string& name);
+	/// Ids of bodies of the current scene that are there, see existingBodies.
+	static boost::python::object existing(const boost::python::object& ids)
+	{
+		return existingBodies(*Omega::instance().getScene(), ids);
+	}
 	void preSave(BondedInteractionLoop&) { expose(); }
 	/// Throws a runtime_error once all functors of this step have returned, as none may throw among them.
 	void stopAfterStep(const std::string& text);
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC(BondedInteractionLoop, InteractionLoop,
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BondedInteractionLoop, InteractionLoop,
 		"An :yref:`InteractionLoop`, with the same arguments, that computes bonds of :yref:`BondedPhys` all "
 		"together instead of one by one: some at a time in SIMD lanes, then every particle collects the loads "
 		"of its bonds in a fixed order. Pairs of spheres that may touch are searched and followed in the same "
@@ -42,7 +44,8 @@ public:
 		":yref:`NewtonIntegrator` their State is read and their loads are added to "
 		":yref:`O.forces<Omega.forces>` in every step, which takes about twice as long.\n\n"
 		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look "
-		"(end of a run, O.step, periodic engines that are due, engines of unknown kind). After O.pause() of "
+		"(end of a run, O.step, periodic engines that are due, engines of unknown kind; a :yref:`PyRunner` "
+		"where it reads an interaction's geometry or physics). After O.pause() of "
 		"a run in the background they may be a few steps old until "
 		":yref:`bonds<Law2_ScGeom_BondedPhys_MohrCoulomb.bonds>` is called. Stiffnesses and radii changed by "
 		"hand are taken up after such a look.\n\n"
@@ -53,7 +56,19 @@ public:
 		"Errors: RuntimeError naming the bond where forces become infinite or not a number; naming the pair "
 		"where O.dt is above the critical step "
 		"(:yref:`criticalTimeStep<Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep>`); "
-		"and under mpirun with several processes."
+		"and under mpirun with several processes.",
+		/*attrs*/,
+		/*ctor*/,
+		.def("sphereArray",&BondedInteractionLoop::sphereArray,(boost::python::arg("ids"),
+			boost::python::arg("name")),
+			"One quantity of spheres of the scene, of any material, as a numpy array, a row for each id: "
+			"*position*, *displacement* [m], *velocity* [m/s], *spin* [rad/s], *rotation* (vector, "
+			"of a length up to π) [rad], *radius* [m]. Works without such an engine, too, and costs about "
+			"10 ns a number.")
+		.staticmethod("sphereArray")
+		.def("existing",&BondedInteractionLoop::existing,(boost::python::arg("ids")),
+			"Those of some ids of bodies that have not been erased, as a numpy array.")
+		.staticmethod("existing")
 	);
 	// clang-format on
 
@@ -107,6 +122,9 @@ private:
 	bool constantsHold(size_t bond) const;
 	void writeBack();
 	void exposeGeometry(Interaction& I) const;
+	Vector3r placeOf(Body::id_t id) const;
+	void show(const State*) override { }
+	void showAll() override;
 	[[noreturn]] void stopAtNotFinite(std::int32_t bond) const;
 
 	ddem::BondSystem                      system;
@@ -129,6 +147,7 @@ private:
 	std::size_t                           knownSize  = 0; ///< interactions of the scene
 	long                                  colliderRuns = -1;
 	bool                                  exposed = true;
+	std::vector<double>                   poseAtLook; ///< of the spheres before they move on, while Python looks
 	BondedStepGuard                       guard;
 	std::mutex                            failing;  ///< held for the text
 	std::string                           stopping; ///< what stops the run after this step

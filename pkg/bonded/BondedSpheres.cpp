@@ -368,15 +368,24 @@ void BondedSpheres::addForeign(std::int32_t first, std::int32_t second)
 
 // ---- State ----------------------------------------------------------------------------------------------------------
 
+bool BondedSpheres::isAhead(Body::id_t id) const
+{
+	const auto r = rowOf(id);
+	return r >= 0 && shown != Shown::All && !guest[size_t(r)] && !wasTouched[size_t(r)];
+}
+
+void BondedSpheres::copy(size_t r, State& to) const
+{
+	const double *const x = motion.poseOf(r), *const v = motion.velocityOf(r);
+	to.pos    = Vector3r(x[0], x[1], x[2]);
+	to.ori    = Quaternionr(x[4], x[5], x[6], x[7]);
+	to.vel    = Vector3r(v[0], v[1], v[2]);
+	to.angVel = Vector3r(v[4], v[5], v[6]);
+}
+
 void BondedSpheres::show(size_t r) const
 {
-	if (guest[r]) return;
-	const double *const x = motion.poseOf(r), *const v = motion.velocityOf(r);
-	State&              s = *states[r];
-	s.pos                 = Vector3r(x[0], x[1], x[2]);
-	s.ori                 = Quaternionr(x[4], x[5], x[6], x[7]);
-	s.vel                 = Vector3r(v[0], v[1], v[2]);
-	s.angVel              = Vector3r(v[4], v[5], v[6]);
+	if (!guest[r]) copy(r, *states[r]);
 }
 
 void BondedSpheres::show(const std::vector<std::int32_t>& rows) const

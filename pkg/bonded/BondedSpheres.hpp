@@ -83,6 +83,10 @@ public:
 
 	// ---- State
 
+	/// Whether State of a body is behind the arrays.
+	bool isAhead(Body::id_t id) const;
+	/// Position, orientation and velocities of such a body.
+	void copyTo(State& state, Body::id_t id) const { copy(size_t(rowOf(id)), state); }
 	/// Writes State of some rows, of any order, for functors that read it.
 	void show(const std::vector<std::int32_t>& rows) const;
 	void show(size_t r) const;
@@ -101,6 +105,7 @@ private:
 	bool sameEngines(const Scene& scene);
 	void readAll(Scene& scene, const NewtonIntegrator* mover);
 	void readMass(const Body& body, size_t r);
+	void copy(size_t r, State& to) const;
 	/// \returns how far it has moved
 	Real import(size_t r);
 	void importShown();

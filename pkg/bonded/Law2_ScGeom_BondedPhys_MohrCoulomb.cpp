@@ -1,12 +1,14 @@
 // GPL v2 or later, see LICENSE.
 // The law of bonded particles: elastic bond, Mohr-Coulomb failure, frictional contact.
+#include <pkg/bonded/BondedArrays.hpp>
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 #include <pkg/bonded/kernel/EsysContact.hpp>
 
-#include <set>
+#include <algorithm>
+#include <map>
 
 namespace yade {
 
@@ -233,32 +235,61 @@ long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount() const
 	return long(broken.size());
 }
 
-long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const std::vector<int>& ids) const
+long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const boost::python::object& ids) const
 {
-	const std::set<int>               those(ids.begin(), ids.end());
+	const std::vector<Body::id_t> those = bodyIdsOf(ids);
+	std::vector<char> among(size_t(those.empty() ? 0 : *std::max_element(those.begin(), those.end()) + 1));
+	for (const auto id : those)
+		if (id >= 0) among[size_t(id)] = 1;
+	const auto has = [&](int id) { return id >= 0 && size_t(id) < among.size() && among[size_t(id)]; };
 	const std::lock_guard<std::mutex> lock(recording);
-	return std::count_if(broken.begin(), broken.end(), [&those](const auto& bond) {
-		return those.count(bond->id1) && those.count(bond->id2);
-	});
+	return std::count_if(
+	        broken.begin(), broken.end(), [&](const auto& bond) { return has(bond->id1) && has(bond->id2); });
 }
+
+boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::brokenArrays() const
+{
+	std::vector<shared_ptr<BrokenBond>> now;
+	{
+		const std::lock_guard<std::mutex> lock(recording);
+		now = broken;
+	}
+	return yade::brokenArrays(now);
+}
+
+namespace {
+
+	/// Bonds that hold in the current scene, as of the last step.
+	std::vector<BondNow> bondsOfScene()
+	{
+		const auto current = Omega::instance().getScene();
+		auto* const loop   = BondedInteractionLoop::in(*current);
+		if (loop) {
+			auto all = loop->bondsNow();
+			if (!all.empty() && Omega::instance().isRunning()) return all;
+			loop->expose();
+		}
+		std::vector<BondNow> all;
+		for (const auto& I : *current->interactions) {
+			const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
+			const auto* geom = dynamic_cast<const ScGeom*>(I->geom.get());
+			if (phys && geom && phys->bonded)
+				all.push_back({ I->getId1(), I->getId2(), phys->normalStress, phys->shearStress,
+				                phys->bondRadius, -phys->normalForce.dot(geom->normal),
+				                phys->shearForce.norm() });
+		}
+		return all;
+	}
+
+} // namespace
+
+boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bondArrays() const { return yade::bondArrays(bondsOfScene()); }
 
 boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 {
 	std::map<std::pair<int, int>, BondNow> all;
-	const auto                             current = Omega::instance().getScene();
-	for (const auto& engine : current->engines)
-		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) all = loop->bondsNow();
-	if (all.empty() || !Omega::instance().isRunning()) {
-		for (const auto& engine : current->engines)
-			if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
-		all.clear();
-		for (const auto& I : *current->interactions) {
-			const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
-			if (phys && phys->bonded)
-				all[std::minmax(I->getId1(), I->getId2())]
-				        = { phys->normalStress, phys->shearStress, phys->bondRadius };
-		}
-	}
+	for (const BondNow& bond : bondsOfScene())
+		all[std::minmax(bond.id1, bond.id2)] = bond;
 	std::vector<Vector2i> ids;
 	std::vector<Real>     normalStress, shearStress, radius;
 	for (const auto& [pair, bond] : all) {

@@ -30,6 +30,10 @@ _METHODS = {
 	# our own read the arrays, not State
 	"DeformableEngine": "criticalTimeStep rulingTriangle array values fields groups",
 	"DeformableTriangle": "stress strain plasticStrain damageTensor damage rotation area",
+	"BondedInteractionLoop": "sphereArray existing",
+	"BondedNewtonIntegrator": "moved",
+	"Law2_ScGeom_BondedPhys_MohrCoulomb":
+		"brokenBonds brokenCount brokenAmong brokenArrays bonds bondArrays bytesPerBond",
 }
 _TRIGGERS_POST_LOAD = 4  # Attr::triggerPostLoad: code that may look at anything runs when such an attribute is set
 
@@ -63,7 +67,8 @@ def touching_nothing():
 	nor what decides which engines act, and may look, in the next step."""
 	found = []
 	for owner in vars(wrapper).values():
-		if not isinstance(owner, type) or issubclass(owner, wrapper.State):
+		# geometry and physics of bonds lag as State does
+		if not isinstance(owner, type) or issubclass(owner, (wrapper.State, wrapper.IGeom, wrapper.IPhys)):
 			continue
 		# Setting an attribute of a body, shape or material means something to the arrays;
 		# of other engines it does not.

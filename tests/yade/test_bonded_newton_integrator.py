@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 
 from yade import (
-	BondedMat, BondedNewtonIntegrator, ForceEngine, FrictMat, GravityEngine, HarmonicMotionEngine,
-	Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, PyRunner, RotationEngine, TorqueEngine,
-	TranslationEngine, TriaxialStressController, Vector3, utils
+	BondedInteractionLoop, BondedMat, BondedNewtonIntegrator, ForceEngine, FrictMat, GravityEngine,
+	HarmonicMotionEngine, Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, PyRunner, RotationEngine,
+	TorqueEngine, TranslationEngine, TriaxialStressController, Vector3, utils
 )
 from yade import ddem
 from yade.ddem import bonded, packing
+
+from recording import run_recording
 
 RADIUS = 1e-3
 
@@ -320,6 +322,59 @@ def test_a_command_sees_and_changes_what_it_touches():
 				record()
 	assert len(seen) >= 29
 	assert np.array(seen) == pytest.approx(np.array(expected[-len(seen):]), rel=1e-9, abs=1e-15)
+
+
+def test_arrays_are_those_of_state_without_writing_it():
+	"""Whole-sample arrays come from where the spheres are; what a command has changed is in them."""
+	sample = shaken()
+	first = int(sample.ids[0])
+	seen = []
+
+	def look():
+		O.bodies[first].state.vel = Vector3(1, 2, 3)
+		arrays = {
+			name: BondedInteractionLoop.sphereArray(sample.ids, name)
+			for name in ("position", "displacement", "velocity", "spin", "rotation")
+		}
+		states = [O.bodies[i].state for i in sample.ids.tolist()]
+		expected = (
+			[s.pos for s in states], [s.displ() for s in states], [s.vel for s in states],
+			[s.angVel for s in states], [s.rot() for s in states]
+		)
+		seen.append([np.array_equal(a, np.array(b, float)) for a, b in zip(arrays.values(), expected)])
+
+	run_recording(20, 5, look)
+	assert len(seen) >= 4 and np.all(seen)
+	with pytest.raises(ValueError, match="'place' is unknown; there are position"):
+		BondedInteractionLoop.sphereArray(sample.ids, "place")
+	wall = O.bodies.append(utils.wall(0, axis=1, material="rock"))
+	with pytest.raises(ValueError, match=f"body #{wall} is no sphere"):
+		BondedInteractionLoop.sphereArray([wall], "position")
+
+
+def test_bonds_as_arrays_are_those_of_the_interactions():
+	"""Also in a command, which sees the bonds' geometry of the step although it is written only when read."""
+	sample = shaken()
+	seen = []
+
+	def look():
+		bonds = bonded.law().bondArrays()
+		pairs = [O.interactions[int(i), int(j)] for i, j in bonds["ids"]]
+		normal = np.array([i.geom.normal for i in pairs])
+		force = np.array([i.phys.normalForce for i in pairs])
+		shear = np.array([i.phys.shearForce.norm() for i in pairs])
+		stress = np.array([(i.phys.normalStress, i.phys.shearStress) for i in pairs])
+		scale = np.abs(bonds["axialForce"]).max()
+		seen.append((
+			abs(bonds["axialForce"] + (normal * force).sum(axis=1)).max() / scale,
+			abs(bonds["shearForce"] - shear).max() / scale,
+			np.array_equal(np.column_stack([bonds["normalStress"], bonds["shearStress"]]), stress),
+		))
+
+	run_recording(20, 5, look)
+	for axial, shear, same in seen:
+		assert axial < 1e-9 and shear < 1e-9 and same
+	assert len(sample.bond_forces) == len(sample.bonds) == len(sample.bond_radii)
 
 
 def test_all_is_written_at_the_end_of_a_run():
