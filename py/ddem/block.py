@@ -8,7 +8,7 @@ import numpy as np
 
 from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
-from . import crackband, meter, provenance
+from . import crackband, mesh, meter, provenance
 from .arrays import BodyIds, fixed
 from .field import Field
 
@@ -112,6 +112,44 @@ class Block:
 		self.node_ids = BodyIds(node_ids)  #: body ids of the nodes, see :class:`arrays.BodyIds`
 		self.triangle_ids = BodyIds(triangle_ids)  #: body ids of the triangles
 		self.thickness = thickness  #: [m]
+
+	@classmethod
+	def from_scene(cls, ids=None):
+		"""The block in the current scene, for a scene that was loaded.
+
+		Its mesh is that of the stress-free positions, in the order of the bodies' ids; where there are several
+		materials, each is a region of the name of its label.
+
+		:param ids: body ids of its triangles; None: all deformable triangles together.
+		:raises RuntimeError: the scene has no deformable triangles
+		:raises ValueError: an id that is no deformable triangle, or triangles of different thickness
+		"""
+		if ids is None:
+			ids = [b.id for b in O.bodies if b and isinstance(b.shape, DeformableTriangle)]
+			if not ids:
+				raise RuntimeError("the scene has no deformable triangles")
+		ids = np.unique(np.asarray(ids, int))
+		bodies = [O.bodies[i] if 0 <= i < len(O.bodies) else None for i in ids.tolist()]
+		for i, body in zip(ids.tolist(), bodies):
+			if body is None or not isinstance(body.shape, DeformableTriangle):
+				raise ValueError(f"body {i} is no deformable triangle")
+		thickness = {body.shape.thickness for body in bodies}
+		if len(thickness) > 1:
+			raise ValueError(
+				f"triangles are {min(thickness)} to {max(thickness)} m thick: give the ids of those "
+				"of one block"
+			)
+		corners = np.array([list(body.shape.nodes) for body in bodies])
+		node_ids, triangles = np.unique(corners, return_inverse=True)
+		nodes = [O.bodies[i].state.refPos for i in node_ids.tolist()]
+		labels = [body.mat.label or f"material {body.mat.id}" for body in bodies]
+		names = list(dict.fromkeys(labels))
+		regions = [names.index(label) + 1 for label in labels] if len(names) > 1 else None
+		made = mesh.Mesh(
+			[(x, y) for x, y, _ in nodes], triangles.reshape(corners.shape), regions,
+			("", *names) if len(names) > 1 else ("", )
+		)
+		return cls(made, node_ids, ids, thickness.pop())
 
 	# --- motion
 	@property

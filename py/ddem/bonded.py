@@ -38,7 +38,7 @@ from yade import (
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
 	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_MohrCoulomb,
 	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O,
-	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
+	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, Wall, utils
 )
 
 from . import broken_bonds, meter
@@ -338,8 +338,7 @@ class Platens:
 	Compression is positive."""
 
 	def __init__(self, sample, bottom, top, velocity, ramp, both, area=None):
-		self.sample = sample
-		self.bottom, self.top = bottom, top  #: body ids of the walls
+		self._measure(sample, bottom, top, sample.upper[1] - sample.lower[1], area)
 		self.engines = [
 			RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)
 		]
@@ -349,7 +348,39 @@ class Platens:
 					ids=[bottom], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp
 				)
 			)
-		width, self.height, depth = sample.upper - sample.lower
+
+	@classmethod
+	def from_scene(cls, sample, area=None):
+		"""The platens on a sample of the current scene, for a scene that was loaded.
+
+		:param sample: as from :meth:`BondedSample.from_scene`
+		:param area: of the loaded face [m²], to be given again where it was given; None: that of the box around
+			the spheres at the start.
+		:raises RuntimeError: the scene has not two Walls of ElasticWallMat across y
+		"""
+		walls = [
+			b for b in O.bodies
+			if b and isinstance(b.shape, Wall) and b.shape.axis == 1 and isinstance(b.mat, ElasticWallMat)
+		]
+		if len(walls) != 2:
+			raise RuntimeError(
+				f"the scene has {len(walls)} Walls of ElasticWallMat across y, where platens are two"
+			)
+		bottom, top = sorted(walls, key=lambda wall: wall.state.refPos[1])
+		self = cls.__new__(cls)
+		height = top.state.refPos[1] - bottom.state.refPos[1]
+		self._measure(sample, bottom.id, top.id, height, area)
+		self.engines = [
+			e for i in (top.id, bottom.id) for e in O.engines
+			if isinstance(e, RampedTranslationEngine) and list(e.ids) == [i]
+		]
+		return self
+
+	def _measure(self, sample, bottom, top, height, area):
+		self.sample = sample
+		self.bottom, self.top = bottom, top  #: body ids of the walls
+		self.height = height  #: distance of the walls at the start [m]
+		width, _, depth = sample.upper - sample.lower
 		self.area = float(width * depth) if area is None else area  #: of the loaded face [m²]
 
 	@property

@@ -45,9 +45,58 @@ class Platens:
 	Compression is positive here, as strengths are."""
 
 	def __init__(self, block, velocity, ramp, lateral, both, top="top", bottom="bottom"):
-		self.sample = block
 		mesh = block.mesh
-		self._rows = {"top": mesh.boundary(top), "bottom": mesh.boundary(bottom)}
+		self._measure(block, {"top": mesh.boundary(top), "bottom": mesh.boundary(bottom)})
+		dofs = "xy" if lateral == "fixed" else "y"
+		for ids in (self.top, self.bottom):
+			block.hold(ids, dofs)
+		self.engines = [_drive(self.top, -velocity, ramp)]
+		if both:
+			self.engines.append(_drive(self.bottom, velocity, ramp))
+
+	@classmethod
+	def from_scene(cls, block):
+		"""The platens on a block of the current scene, for a scene that was loaded.
+
+		:param block: as from :meth:`block.Block.from_scene`
+		:raises RuntimeError: no RampedTranslationEngine drives nodes of the block along y, or none of its nodes
+			is held at the other end
+		"""
+		mine = set(block.node_ids.tolist())
+		drives = [
+			e for e in O.engines
+			if isinstance(e, RampedTranslationEngine) and abs(e.translationAxis[1]) == 1 and e.ids
+			and mine.issuperset(e.ids)
+		]
+		level = lambda e: np.mean([O.bodies[i].state.refPos[1] for i in e.ids])
+		drives.sort(key=level)
+		if not drives:
+			raise RuntimeError(
+				"no RampedTranslationEngine in O.engines drives nodes of this block along y: "
+				"there are no platens"
+			)
+		rows = {i: row for row, i in enumerate(block.node_ids.tolist())}
+		top = sorted(rows[i] for i in drives[-1].ids)
+		if len(drives) > 1:
+			bottom = sorted(rows[i] for i in drives[0].ids)
+		else:
+			middle = block.mesh.nodes[:, 1].mean()
+			bottom = [
+				row for row in block.mesh.boundary().tolist()
+				if block.mesh.nodes[row, 1] < middle and row not in set(top)
+				and "y" in O.bodies[block.node_ids[row]].state.blockedDOFs
+			]
+		if not bottom:
+			raise RuntimeError("no node of this block is held at the end that the platens do not drive")
+		self = cls.__new__(cls)
+		self._measure(block, {"top": np.array(top), "bottom": np.array(bottom)})
+		self.engines = drives[::-1]
+		return self
+
+	def _measure(self, block, rows):
+		"""Areas and length of a block between its ends."""
+		self.sample = block
+		self._rows, mesh = rows, block.mesh
 		shared = np.intersect1d(*self._rows.values())
 		if len(shared):
 			x, y = mesh.nodes[shared[0]]
@@ -67,12 +116,6 @@ class Platens:
 		self.area = widths["top"] * block.thickness  #: loaded area of the top, seen along the load [m²]
 		self.area_bottom = widths["bottom"] * block.thickness  #: that of the bottom [m²]
 		self.top, self.bottom = (block.node_ids[self._rows[name]] for name in ("top", "bottom"))  #: body ids
-		dofs = "xy" if lateral == "fixed" else "y"
-		for ids in (self.top, self.bottom):
-			block.hold(ids, dofs)
-		self.engines = [_drive(self.top, -velocity, ramp)]
-		if both:
-			self.engines.append(_drive(self.bottom, velocity, ramp))
 
 	@property
 	def force_top(self):

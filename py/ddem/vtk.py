@@ -11,6 +11,7 @@ Open the .pvd file in ParaView.
 """
 import glob
 import os
+import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -33,7 +34,9 @@ class Recorder:
 	:param sample: a Block of deformable triangles (:func:`yade.ddem.append`) or a sample of bonded spheres
 		(:func:`yade.ddem.bonded.append`)
 	:param name: path and beginning of the files' names: "out/block" gives out/block.pvd and out/block-0000.vtu,
-		out/block-0001.vtu … Missing folders are made; files of an earlier recording of that name are removed.
+		out/block-0001.vtu … Missing folders are made. Files of an earlier recording of that name are removed
+		where the scene is at its start. In a scene that has run, as one that was loaded, the recording goes on:
+		its files up to the present time stay, later ones are removed.
 	:param sub_elements: of triangles: three cells a triangle, each with its own stress and damage,
 		instead of one with their mean
 
@@ -137,11 +140,43 @@ class _Collection:
 		self.tree.getroot().append(self.origin)
 		self.list = ET.SubElement(self.tree.getroot(), "Collection")
 		os.makedirs(os.path.dirname(os.path.abspath(name)), exist_ok=True)
-		for old in glob.glob(glob.escape(name) + "-[0-9]*.vtu") + glob.glob(glob.escape(self.path)):
-			os.remove(old)
+		kept = self._kept()
+		self._next = 0
+		for entry in kept:
+			self.list.append(entry)
+			self._next = int(entry.get("file")[len(os.path.basename(name)) + 1:-len(".vtu")]) + 1
+		files = {os.path.join(os.path.dirname(name), entry.get("file")) for entry in kept}
+		for old in glob.glob(glob.escape(name) + "-[0-9]*.vtu") + (
+			[] if kept else glob.glob(glob.escape(self.path))
+		):
+			if old not in files:
+				os.remove(old)
+
+	def _kept(self):
+		"""Entries of an earlier part of the same run, in order of time."""
+		from yade import O
+		if O.iter == 0 or not os.path.exists(self.path):
+			return []
+		try:
+			entries = ET.parse(self.path).getroot().iter("DataSet")
+		except ET.ParseError:
+			return []
+		own = re.compile(re.escape(os.path.basename(self.name)) + r"-\d+\.vtu")
+		there = lambda entry: os.path.exists(os.path.join(os.path.dirname(self.path), entry.get("file")))
+		return sorted(
+			(
+				entry
+				for entry in entries
+				if own.fullmatch(entry.get("file", ""))
+				and float(entry.get("timestep")) <= O.time * (1 + 1e-12)
+				and there(entry)
+			),
+			key=lambda entry: float(entry.get("timestep")),
+		)
 
 	def add(self, data, time):
-		path = f"{self.name}-{len(self.list):04d}.vtu"
+		path = f"{self.name}-{self._next:04d}.vtu"
+		self._next += 1
 		write(data, path, time)
 		ET.SubElement(self.list, "DataSet", timestep=repr(float(time)), part="0", file=os.path.basename(path))
 		self.origin.text = provenance.comment()

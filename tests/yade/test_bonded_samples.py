@@ -89,3 +89,28 @@ def test_platens_that_meet_stop():
 	):
 		O.run(int(2.5e-4 / O.dt), True)
 	assert platens.strain < 1.1
+
+
+def test_a_loaded_scene_has_its_sample_and_platens_again(tmp_path):
+	sample, platens = specimen()
+	O.run(60, True)
+	O.save(str(tmp_path / "middle.yade.gz"))
+	O.run(40, True)
+	expected = platens.stress, platens.strain
+	assert expected[0] > 0
+	O.reset()
+	O.load(str(tmp_path / "middle.yade.gz"))
+	again = bonded.BondedSample.from_scene()
+	with pytest.raises(
+		RuntimeError, match="the scene has 1 Walls of ElasticWallMat across y, where platens are two"
+	):
+		wall = O.bodies[platens.top]
+		wall.shape.axis = 0
+		bonded.Platens.from_scene(again)
+	wall.shape.axis = 1
+	loaded = bonded.Platens.from_scene(again)
+	O.run(40, True)
+	assert loaded.strain == pytest.approx(expected[1], rel=1e-9)
+	assert loaded.stress == pytest.approx(expected[0], rel=1e-3)  # the box of the spheres is that of the packing
+	assert bonded.Platens.from_scene(again, area=platens.area).stress == pytest.approx(expected[0], rel=1e-6)
+	assert len(loaded.engines) == 2 and again.initial_bonds == sample.initial_bonds

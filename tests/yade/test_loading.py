@@ -142,3 +142,54 @@ def test_ends_that_cannot_be_loaded_are_refused(top, bottom, message):
 	with pytest.raises(ValueError, match=message):
 		ddem.platens(block, velocity=1, top=top, bottom=bottom)
 	assert {O.bodies[i].state.blockedDOFs for i in block.node_ids} == {"zXYZ"}
+
+
+# ---- a scene that was loaded ----
+
+
+@pytest.mark.parametrize("both", (False, True))
+def test_a_loaded_scene_has_its_block_and_platens_again(both, tmp_path):
+	"""Another process goes on: the same stress, strain and fields, and the same run."""
+	elastic("soft")
+	elastic("hard", shear=20e9, bulk=25e9)
+	shape = mesh.rectangle(0.04, 0.08, size=0.01, regions={"hard": mesh.box(0.01, 0.02, 0.03, 0.06)})
+	block = ddem.append(shape, {"": "soft", "hard": "hard"}, thickness=0.3, position=(0.2, -0.1, 0))
+	platens = ddem.platens(block, velocity=2, both=both)
+	O.engines = [ForceResetter(), *platens.engines, DeformableEngine()]
+	O.dt = ddem.time_step(0.8)
+	O.run(60, True)
+	O.save(str(tmp_path / "middle.yade.gz"))
+	O.run(40, True)
+	expected = (platens.stress, platens.strain, platens.area, platens.height, block.displacements.copy())
+	O.reset()
+	O.load(str(tmp_path / "middle.yade.gz"))
+	again = ddem.Block.from_scene()
+	loaded = ddem.Platens.from_scene(again)
+	O.run(40, True)
+	assert (loaded.stress, loaded.strain) == pytest.approx(expected[:2], rel=1e-12)
+	assert (loaded.area, loaded.height) == pytest.approx(expected[2:4], rel=1e-12)
+	assert np.array_equal(again.displacements, expected[4])
+	assert again.thickness == 0.3 and len(loaded.engines) == 1 + both
+	assert sorted(again.mesh.region_names) == ["", "hard", "soft"]
+	hard = again.mesh.regions == again.mesh.region_names.index("hard")
+	assert again.area[hard].sum() == pytest.approx(0.02 * 0.04)
+
+
+def test_one_block_of_several_by_its_ids():
+	blocks = [
+		ddem.append(mesh.rectangle(0.02, 0.02, size=0.01), elastic(f"rock{k}"), thickness=0.1 * (k + 1),
+			position=(0.05 * k, 0, 0))
+		for k in range(2)
+	]
+	with pytest.raises(ValueError, match="triangles are 0.1 to 0.2 m thick: give the ids of those of one block"):
+		ddem.Block.from_scene()
+	again = ddem.Block.from_scene(blocks[1].triangle_ids)
+	assert again.thickness == 0.2 and np.array_equal(again.triangle_ids, blocks[1].triangle_ids)
+	assert np.array_equal(again.node_ids, blocks[1].node_ids)
+	with pytest.raises(ValueError, match=f"body {blocks[0].node_ids[0]} is no deformable triangle"):
+		ddem.Block.from_scene([blocks[0].node_ids[0]])
+	with pytest.raises(RuntimeError, match="no RampedTranslationEngine in O.engines drives nodes of this block"):
+		ddem.Platens.from_scene(again)
+	O.reset()
+	with pytest.raises(RuntimeError, match="the scene has no deformable triangles"):
+		ddem.Block.from_scene()

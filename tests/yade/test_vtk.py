@@ -138,6 +138,33 @@ def test_recorder_in_a_run_replaces_an_older_recording(block, tmp_path):
 	del __main__.record
 
 
+def test_a_recording_goes_on_in_a_scene_that_was_loaded(block, tmp_path):
+	"""What lies after the present time is of a run that was given up; other series stay."""
+	name = str(tmp_path / "series" / "block")
+	record = vtk.Recorder(block, name)
+	record()
+	for k in range(5):
+		O.run(10, True)
+		record()
+		if k == 2:
+			O.save(str(tmp_path / "middle.yade.gz"))
+	(tmp_path / "series" / "block-notes.vtu").write_text("mine")
+	given_up = collection(name + ".pvd")
+	assert len(given_up) == 6
+	O.reset()
+	O.load(str(tmp_path / "middle.yade.gz"))
+	record = vtk.Recorder(ddem.Block.from_scene(), name)
+	O.run(5, True)
+	record()
+	found = collection(name + ".pvd")
+	assert found[:4] == given_up[:4] and len(found) == 5
+	assert found[4][0] == pytest.approx(35 * O.dt) and found[4][1].endswith("block-0004.vtu")
+	assert sorted(os.listdir(tmp_path / "series")) == [
+		*(f"block-000{k}.vtu" for k in range(5)), "block-notes.vtu", "block.pvd"
+	]
+	assert read(found[4][1])[5] == O.time
+
+
 def test_grid_refuses_arrays_that_do_not_fit():
 	with pytest.raises(ValueError, match="'heat' has 2 rows where the grid has 3"):
 		vtk.grid(np.zeros((3, 2)), [[0, 1, 2]], VTK_TRIANGLE, {"heat": [1, 2]})
