@@ -172,6 +172,10 @@ bool BondedInteractionLoop::interactionsAreKnown()
 			return false;
 	for (const Pair& pair : pairs)
 		if (!isThere(pair.interaction) || pair.interaction->phys.get() != pair.phys) return false;
+	for (const Contact& contact : contacts) { // somebody who looked may have changed its springs
+		const BondedPhys& phys = *pairs[size_t(contact.pair)].phys;
+		if (phys.kn != contact.state.stiffness.normal || phys.ks != contact.state.stiffness.shear) return false;
+	}
 	for (const auto& I : others)
 		if (!isThere(I)) return false;
 	return true;
@@ -224,8 +228,8 @@ void BondedInteractionLoop::startContacts()
 		pair.phys = pair.interaction->isReal() ? dynamic_cast<BondedPhys*>(pair.interaction->phys.get())
 		                                       : nullptr;
 		if (!pair.phys) continue;
-		search.follow(size_t(p), true);
-		contacts.push_back(p);
+		pair.reach = pair.phys->contactReach;
+		followContact(size_t(p));
 	}
 	fresh.clear();
 }
@@ -294,7 +298,8 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 		if (phys && phys->bonded) held.push_back({ I, phys });
 		else if (following && first >= 0 && second >= 0 && (phys || !I->isReal()) && I->functorCache.geomExists
 		         && !spheres.isClumpMember(size_t(first)) && !spheres.isClumpMember(size_t(second)))
-			found.push_back({ I, phys, spheres.radius[size_t(first)], spheres.radius[size_t(second)] });
+			found.push_back({ I, phys, spheres.radius[size_t(first)], spheres.radius[size_t(second)],
+			          phys ? phys->contactReach : 0 });
 		else
 			others.push_back(I);
 	}
@@ -347,11 +352,19 @@ void BondedInteractionLoop::follow(Pair pair, std::int32_t first, std::int32_t s
 {
 	const auto place = pairs.size();
 	search.add(first, second, pair.radius1 + pair.radius2);
-	if (pair.phys) {
-		search.follow(place, true);
-		contacts.push_back(std::int32_t(place));
-	}
 	pairs.push_back(std::move(pair));
+	if (pairs.back().phys) followContact(place);
+}
+
+void BondedInteractionLoop::followContact(std::size_t place)
+{
+	const Pair& pair   = pairs[place];
+	const auto  massOf = [this](std::int32_t r) { return (*scene->bodies)[spheres.ids[size_t(r)]]->state->mass; };
+	search.follow(place, true);
+	contacts.push_back({ std::int32_t(place),
+	                     pair.phys->contactNow(massOf(search.firstOf(place)), massOf(search.secondOf(place))),
+	                     {},
+	                     false });
 }
 
 void BondedInteractionLoop::advance(Law& bondLaw)
@@ -384,34 +397,30 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 /// One step of the contacts that there were at its beginning.
 void BondedInteractionLoop::advanceContacts(Law& bondLaw, std::size_t count)
 {
-	contactLoads.resize(count);
-	const auto massOf = [this](std::int32_t r) { return (*scene->bodies)[spheres.ids[size_t(r)]]->state->mass; };
 #pragma omp parallel for schedule(static)
 	for (std::ptrdiff_t k = 0; k < std::ptrdiff_t(count); k++) {
-		const auto  place  = size_t(contacts[size_t(k)]);
-		BondedPhys& phys   = *pairs[place].phys;
-		const bool  damped = phys.normalDamping != 0 || phys.shearDamping != 0;
-		contactLoads[size_t(k)] = bondLaw.advance(
-		        phys, motionOf(place), damped ? massOf(search.firstOf(place)) : 0,
-		        damped ? massOf(search.secondOf(place)) : 0);
+		Contact& contact = contacts[size_t(k)];
+		contact.loads    = bondLaw.advance(contact.state, motionOf(size_t(contact.pair)));
+		contact.ahead    = true;
 	}
 	// one thread, in order: sums do not depend on threads
+	const bool  book = scene->trackEnergy;
 	std::size_t kept = 0;
 	for (std::size_t k = 0; k < contacts.size(); k++) {
-		const auto place = size_t(contacts[k]);
-		Pair&      pair  = pairs[place];
+		const auto place = size_t(contacts[k].pair);
 		if (k < count) {
-			const ddem::ContactLoads& loads = contactLoads[k];
+			const ddem::ContactLoads& loads = contacts[k].loads;
 			addLoads(search.firstOf(place), search.secondOf(place), loads);
-			if (scene->trackEnergy) bondLaw.bookContact(loads);
+			if (book) bondLaw.bookContact(loads);
 			if (!loads.touching && !touches(place)) {
-				scene->interactions->requestErase(pair.interaction);
-				pair.phys = nullptr;
+				scene->interactions->requestErase(pairs[place].interaction);
+				pairs[place].phys = nullptr;
 				search.follow(place, false);
 				continue;
 			}
 		}
-		contacts[kept++] = contacts[k];
+		if (kept != k) contacts[kept] = contacts[k];
+		kept++;
 	}
 	contacts.resize(kept);
 }
@@ -431,7 +440,7 @@ ddem::ContactMotion BondedInteractionLoop::motionOf(std::size_t place) const
 	const double *const v1 = spheres.motion.velocityOf(first), *const v2 = spheres.motion.velocityOf(second);
 	const Vector3r      branch(x2[0] - x1[0], x2[1] - x1[1], x2[2] - x1[2]);
 	const Pair&         pair = pairs[place];
-	const Real distance = branch.norm(), share = pair.phys->contactReach / (pair.radius1 + pair.radius2);
+	const Real distance = branch.norm(), share = pair.reach / (pair.radius1 + pair.radius2);
 	return { branch / distance,
 		 distance,
 		 share * pair.radius1,
@@ -469,7 +478,7 @@ void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std:
 		if (scene->trackEnergy) bondLaw.bookContact(loads);
 		parted.push_back({ first, second, loads });
 		const auto& geom = static_cast<const ScGeom&>(*h.interaction->geom);
-		Pair        pair { h.interaction, h.phys, geom.radius1, geom.radius2 };
+		Pair        pair { h.interaction, h.phys, geom.radius1, geom.radius2, h.phys->contactReach };
 		if (!bondLaw.touching(*h.interaction)) {
 			scene->interactions->requestErase(h.interaction);
 			pair.phys = nullptr;
@@ -549,8 +558,15 @@ void BondedInteractionLoop::writeBack()
 		phys.normalStress    = row.normalStress;
 		phys.shearStress     = row.shearStress;
 	}
-	for (const std::int32_t p : contacts)
-		if (const auto& I = pairs[size_t(p)].interaction; I->geom) exposeGeometry(*I);
+	for (Contact& contact : contacts) {
+		const Pair& pair = pairs[size_t(contact.pair)];
+		if (!contact.ahead || !pair.interaction->geom || pair.interaction->phys.get() != pair.phys) continue;
+		exposeGeometry(*pair.interaction);
+		pair.phys->setContact(
+		        contact.state.memory, contact.loads.force,
+		        static_cast<const ScGeom&>(*pair.interaction->geom).normal);
+		contact.ahead = false;
+	}
 }
 
 void BondedInteractionLoop::exposeGeometry(Interaction& I) const

@@ -94,6 +94,7 @@ private:
 		shared_ptr<Interaction> interaction;
 		BondedPhys*             phys; ///< null while they do not touch
 		Real                    radius1, radius2;
+		Real                    reach; ///< of the contact; where they do not touch, of no meaning
 	};
 	/// What a bond leaves in the step in which it breaks.
 	struct Parted {
@@ -118,6 +119,7 @@ private:
 	ddem::ContactMotion motionOf(size_t pair) const;
 	void addLoads(std::int32_t first, std::int32_t second, const ddem::ContactLoads& loads);
 	void follow(Pair pair, std::int32_t first, std::int32_t second);
+	void followContact(std::size_t pair);
 	void breakOverloaded(Law& law, const std::vector<std::int32_t>& bonds);
 	bool constantsHold(size_t bond) const;
 	void writeBack();
@@ -133,9 +135,15 @@ private:
 	std::size_t                           broken = 0; ///< of the held ones
 	ddem::SpherePairs                     search;
 	std::vector<Pair>                     pairs;   ///< of the search
-	std::vector<std::int32_t>             contacts; ///< pairs that touch
+	/// A pair that touches, its state being ahead of that of its object.
+	struct Contact {
+		std::int32_t       pair;
+		BondedContact      state;
+		ddem::ContactLoads loads;         ///< of the last step
+		bool               ahead = false; ///< whether it has made a step since its object was written
+	};
+	std::vector<Contact>                  contacts; ///< in order of their beginning
 	std::vector<std::int32_t>             fresh;    ///< pairs that have begun to touch in this step
-	std::vector<ddem::ContactLoads>       contactLoads; ///< of every contact
 	std::vector<Parted>                   parted;       ///< bonds that have broken in this step
 	bool                                  following = false; ///< whether pairs of spheres are followed here
 	std::vector<shared_ptr<Interaction>>  others;   ///< interactions that YADE's functors compute

@@ -84,6 +84,27 @@ ddem::Bond BondedPhys::bond(const ScGeom& geom) const
 		 ddem::rotation(frame2) };
 }
 
+BondedContact BondedPhys::contactNow(Real mass1, Real mass2) const
+{
+	return { { kn, ks },
+		 friction(),
+		 contactDamping(mass1, mass2),
+		 { contactNormal, contactShear, contactForce, contactEnergy, sliding, viscousNormal, viscousShear } };
+}
+
+void BondedPhys::setContact(const ddem::ContactMemory& memory, const Vector3r& force, const Vector3r& normal)
+{
+	contactNormal = memory.normal;
+	contactShear  = memory.shear;
+	contactForce  = memory.force;
+	contactEnergy = memory.energy;
+	sliding       = memory.sliding;
+	viscousNormal = memory.viscousNormal;
+	viscousShear  = memory.viscousShear;
+	normalForce   = -force.dot(normal) * normal;
+	shearForce    = -force - normalForce;
+}
+
 ddem::ContactDamping BondedPhys::contactDamping(Real mass1, Real mass2) const
 {
 	if (normalDamping == 0 && shearDamping == 0) return {};

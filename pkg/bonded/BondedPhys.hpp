@@ -15,6 +15,14 @@ inline bool isSphere(const Body& body)
 	        || dynamic_cast<const Sphere*>(body.shape.get());
 }
 
+/// A contact apart from its object: what it is and what it remembers.
+struct BondedContact {
+	ddem::ContactStiffness stiffness;
+	ddem::ContactFriction  friction;
+	ddem::ContactDamping   damping;
+	ddem::ContactMemory    memory;
+};
+
 class BondedPhys : public RotStiffFrictPhys {
 public:
 	virtual ~BondedPhys() = default;
@@ -37,6 +45,10 @@ public:
 	ddem::ContactFriction friction() const { return { frictionStatic, frictionDynamic, gradualFriction }; }
 	/// The bond as the kernel knows it. \param geom gives the radii of its particles
 	ddem::Bond bond(const ScGeom& geom) const;
+	/// The contact between particles of these masses [kg].
+	BondedContact contactNow(Real mass1, Real mass2) const;
+	/// Takes up what a step has made of it.
+	void setContact(const ddem::ContactMemory& memory, const Vector3r& force, const Vector3r& normal);
 	/// Coefficients of viscous damping of the contact between particles of these masses [kg].
 	ddem::ContactDamping contactDamping(Real mass1, Real mass2) const;
 

@@ -5,7 +5,6 @@
 #include <pkg/bonded/BondedTimeStep.hpp>
 #include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
-#include <pkg/bonded/kernel/EsysContact.hpp>
 
 #include <algorithm>
 #include <map>
@@ -143,32 +142,12 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Inte
 
 	const ddem::ContactMotion motion { normal,        distance,     radius1, radius2, velocity2 - velocity1,
 		                           state1.angVel, state2.angVel };
-	ddem::ContactLoads        loads = advance(
-                phys, motion, moverOf(*scene, I.getId1()).state->mass, moverOf(*scene, I.getId2()).state->mass);
+	BondedContact contact
+	        = phys.contactNow(moverOf(*scene, I.getId1()).state->mass, moverOf(*scene, I.getId2()).state->mass);
+	ddem::ContactLoads loads = advance(contact, motion);
+	phys.setContact(contact.memory, loads.force, normal);
 	if (!sphere1) loads.moment1 = arm1.cross(loads.force);
 	if (!sphere2) loads.moment2 = -arm2.cross(loads.force);
-	return loads;
-}
-
-ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::advance(
-        BondedPhys& phys, const ddem::ContactMotion& motion, Real mass1, Real mass2) const
-{
-	ddem::ContactMemory memory { phys.contactNormal, phys.contactShear,  phys.contactForce, phys.contactEnergy,
-		                     phys.sliding,       phys.viscousNormal, phys.viscousShear };
-	const ddem::ContactLoads loads = esys
-	        ? ddem::esysContactLoads({ phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory)
-	        : ddem::contactLoads(
-	                { phys.kn, phys.ks }, phys.friction(), motion, scene->dt, memory,
-	                phys.contactDamping(mass1, mass2));
-	phys.contactNormal = memory.normal;
-	phys.contactShear  = memory.shear;
-	phys.contactForce  = memory.force;
-	phys.contactEnergy = memory.energy;
-	phys.sliding       = memory.sliding;
-	phys.viscousNormal = memory.viscousNormal;
-	phys.viscousShear  = memory.viscousShear;
-	phys.normalForce   = -loads.force.dot(motion.normal) * motion.normal;
-	phys.shearForce    = -loads.force - phys.normalForce;
 	return loads;
 }
 

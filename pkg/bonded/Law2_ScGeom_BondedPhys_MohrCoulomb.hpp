@@ -6,6 +6,7 @@
 #include <pkg/bonded/BondedPhys.hpp>
 #include <pkg/bonded/BrokenBond.hpp>
 #include <pkg/bonded/kernel/BondSystem.hpp>
+#include <pkg/bonded/kernel/EsysContact.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
 #include <mutex>
@@ -25,8 +26,14 @@ public:
 	/// \returns the contact's loads in this step, for the caller to apply and to book
 	ddem::ContactLoads breakBond(Interaction& I, const ddem::BondStress& stress);
 	/// One step of a contact. \returns its loads, for the caller to apply and to book
-	ddem::ContactLoads
-	advance(BondedPhys& phys, const ddem::ContactMotion& motion, Real mass1, Real mass2) const;
+	ddem::ContactLoads advance(BondedContact& contact, const ddem::ContactMotion& motion) const
+	{
+		return esys ? ddem::esysContactLoads(
+		               contact.stiffness, contact.friction, motion, scene->dt, contact.memory)
+		            : ddem::contactLoads(
+		                    contact.stiffness, contact.friction, motion, scene->dt, contact.memory,
+		                    contact.damping);
+	}
 	/// Whether the pair still touches.
 	bool touching(const Interaction& I) const;
 	/// Adds the energies of a contact to the book.
