@@ -202,7 +202,11 @@ def test_kinematic_engines_drive_spheres(engine):
 
 def with_a_kinematic_engine_on_free_spheres():
 	sample = shaken()
-	O.engines = [*O.engines[:-1], TranslationEngine(velocity=3, ids=sample.ids[:10].tolist()), O.engines[-1]]
+	O.engines = [
+		*O.engines[:-1],
+		TranslationEngine(translationAxis=(1, 0, 0), velocity=3, ids=sample.ids[:10].tolist()),
+		O.engines[-1],
+	]
 	return sample, lambda: None
 
 

@@ -274,6 +274,7 @@ def test_a_scheduler_that_goes_is_no_failed_evaluation(tmp_path):
 		with concurrent.futures.ThreadPoolExecutor() as pool:
 			waiting = pool.submit(bench.measure, [{"x": 1}, {"x": 2}])
 			until(lambda: number(tmp_path / "running"))
+			until(lambda: (tmp_path / "e").exists() and (tmp_path / "e").read_text())  # the first has come
 			scheduler.kill()
 			with pytest.raises(Lost, match=f"the Dask scheduler at {address} is gone"):
 				waiting.result()
