@@ -39,8 +39,10 @@ inline SpaceRotation<Number> turned(const SpaceRotation<Number>& q, const SpaceV
 }
 
 /// \tparam Unit names the instruction set, so that the linker keeps a copy for each
+/// Flattened, as bondLoop is.
 template <class Unit, class Number, unsigned effects>
-SphereSums sphereLoop(const SphereArrays& a, std::size_t begin, std::size_t end, const SphereStep& step)
+[[gnu::flatten]] SphereSums
+sphereLoop(const SphereArrays& a, std::size_t begin, std::size_t end, const SphereStep& step)
 {
 	using L = Lanes<Number>;
 	using namespace SphereEffects;
