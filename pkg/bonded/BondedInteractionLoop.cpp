@@ -67,21 +67,35 @@ bool BondedInteractionLoop::oneByOne() const
 
 void BondedInteractionLoop::action()
 {
+	pythonLooks::watched(); // takes Python's own lock once, so not while others may wait for ours
 	pythonLooks::end(*this);
 	process.require(*scene);
 	Law* const bondLaw = law();
 	batched            = bondLaw && !oneByOne();
-	if (batched) return actBatched(*bondLaw);
-	{
-		const std::lock_guard<std::mutex> lock(busy);
-		writeBack();
-		spheres.leave();
-		held.clear();
-		known = -1;
+	if (batched) {
+		try {
+			return actBatched(*bondLaw);
+		} catch (...) {
+			leaveBatched(); // for who looks for the cause
+			throw;
+		}
 	}
+	leaveBatched();
 	if (bondLaw && guard.isDue(*scene, false)) guard.check(*scene);
 	InteractionLoop::action();
 	throwFailure();
+}
+
+/// Hands bonds and spheres back to YADE's objects.
+void BondedInteractionLoop::leaveBatched()
+{
+	const std::lock_guard<std::mutex> lock(busy);
+	if (system.size() == held.size()) writeBack();
+	spheres.leave();
+	held.clear();
+	contacts.clear();
+	exposed = true;
+	known   = -1;
 }
 
 void BondedInteractionLoop::actBatched(Law& bondLaw)
@@ -160,15 +174,16 @@ bool BondedInteractionLoop::interactionsAreKnown()
 	if (known != BondedPhys::bondsMade || knownScene != scene || all.size() != knownSize
 	    || 8 * broken > held.size())
 		return false;
-	if (const long runs = runsOf(colliderOf(*scene)); runs < 0 || runs != colliderRuns) return false;
-	if (!exposed) return true; // nobody had a chance to change any
+	const long runs = runsOf(colliderOf(*scene));
+	if (runs != colliderRuns) return false;
+	if (!exposed && runs >= 0) return true; // nobody had a chance to change any
 	const auto isThere = [&all](const shared_ptr<Interaction>& I) {
 		const auto place = size_t(I->linIx);
 		return place < all.size() && all[place] == I;
 	};
 	for (size_t j = 0; j < held.size(); j++)
 		if (const auto& I = held[j].interaction;
-		    I && (!isThere(I) || I->phys.get() != held[j].phys || !I->geom || !constantsHold(j)))
+		    I && (!isThere(I) || I->phys.get() != held[j].phys || !I->geom || (exposed && !constantsHold(j))))
 			return false;
 	for (const Pair& pair : pairs)
 		if (!isThere(pair.interaction) || pair.interaction->phys.get() != pair.phys) return false;
@@ -238,8 +253,8 @@ void BondedInteractionLoop::startContacts()
 bool BondedInteractionLoop::act(const shared_ptr<Interaction>& I)
 {
 	const auto& bodies = *scene->bodies;
+	if (!bodies.exists(I->getId1()) || !bodies.exists(I->getId2())) return false;
 	Body *body1 = bodies[I->getId1()].get(), *body2 = bodies[I->getId2()].get();
-	if (!body1 || !body2) return false;
 	if (body1->isClump() || body2->isClump() || !body1->shape || !body2->shape || !I->functorCache.geomExists)
 		return true;
 	auto& functors = I->functorCache;
@@ -295,8 +310,9 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 	for (const auto& I : *scene->interactions) {
 		const std::int32_t first = spheres.rowOf(I->getId1()), second = spheres.rowOf(I->getId2());
 		auto* const phys = I->isReal() ? dynamic_cast<BondedPhys*>(I->phys.get()) : nullptr;
-		if (phys && phys->bonded) held.push_back({ I, phys });
-		else if (following && first >= 0 && second >= 0 && (phys || !I->isReal()) && I->functorCache.geomExists
+		if (phys && phys->bonded && first >= 0 && second >= 0) held.push_back({ I, phys });
+		else if (following && first >= 0 && second >= 0 && (phys ? !phys->bonded : !I->isReal())
+		         && I->functorCache.geomExists
 		         && !spheres.isClumpMember(size_t(first)) && !spheres.isClumpMember(size_t(second)))
 			found.push_back({ I, phys, spheres.radius[size_t(first)], spheres.radius[size_t(second)],
 			          phys ? phys->contactReach : 0 });
@@ -508,6 +524,7 @@ boost::python::object BondedInteractionLoop::sphereArray(const boost::python::ob
 {
 	const auto        current = Omega::instance().getScene();
 	auto* const       loop    = in(*current);
+	const auto        lock    = loop ? std::unique_lock<std::mutex>(loop->busy) : std::unique_lock<std::mutex>();
 	return yade::sphereArray(*current, loop ? &loop->spheres : nullptr, ids, name);
 }
 

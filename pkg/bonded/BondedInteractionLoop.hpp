@@ -107,6 +107,7 @@ private:
 	bool oneByOne() const;
 	void throwFailure();
 	void actBatched(Law& law);
+	void leaveBatched();
 	bool interactionsAreKnown();
 	void collect(Law& law);
 	bool followsPairs() const;

@@ -24,11 +24,12 @@ BondedNewtonIntegrator* BondedNewtonIntegrator::in(const Scene& scene)
 BondedSpheres* BondedNewtonIntegrator::spheres() const
 {
 	auto* const loop = BondedInteractionLoop::in(*scene);
-	return loop && BondedNewtonIntegrator::in(*scene) == this ? loop->spheresInArrays() : nullptr;
+	return loop && !loop->dead && BondedNewtonIntegrator::in(*scene) == this ? loop->spheresInArrays() : nullptr;
 }
 
 void BondedNewtonIntegrator::action()
 {
+	pythonLooks::watched(); // takes Python's own lock once, so not while others may wait for ours
 	auto* const loop = BondedInteractionLoop::in(*scene);
 	for (const auto& engine : scene->engines) {
 		if (engine.get() == loop) break;
@@ -41,9 +42,22 @@ void BondedNewtonIntegrator::action()
 	inArrays                = spheresHere ? spheresHere->movedHere() : 0;
 	if (!spheresHere) return NewtonIntegrator::action();
 	const std::lock_guard<std::mutex> lock(loop->busy);
-	spheresHere->takeUpChanges(*scene);
-	moveOthers(spheresHere->others());
-	spheresHere->takeForces(scene->forces);
+	if (!spheresHere->takeUpChanges(*scene)) {
+		inArrays = 0;
+		return NewtonIntegrator::action();
+	}
+	try {
+		moveInArrays(*loop, *spheresHere);
+	} catch (...) {
+		spheresHere->showToAll(); // for who looks for the cause
+		throw;
+	}
+}
+
+void BondedNewtonIntegrator::moveInArrays(BondedInteractionLoop& loop, BondedSpheres& spheresHere)
+{
+	moveOthers(spheresHere.others());
+	spheresHere.takeForces(scene->forces);
 
 	ddem::SphereStep step;
 	step.dt          = scene->dt;
@@ -52,13 +66,13 @@ void BondedNewtonIntegrator::action()
 	step.energy      = scene->trackEnergy;
 	for (int axis = 0; axis < 3; axis++)
 		step.gravity[axis] = gravity[axis];
-	const ddem::SphereSums sums = spheresHere->motion.step(step);
-	if (!sums.finite) stopAtNotFinite(*spheresHere);
+	const ddem::SphereSums sums = spheresHere.motion.step(step);
+	if (!sums.finite) stopAtNotFinite(spheresHere);
 	if (step.energy) book(sums);
-	spheresHere->come(scene->dt * std::sqrt(sums.speedSquared));
+	spheresHere.come(scene->dt * std::sqrt(sums.speedSquared));
 	// what a collider asks for: below 1 nothing has left its bound; 0 would be taken for no answer
-	maxVelocitySq = math::max(maxVelocitySq, Real(spheresHere->leavesBounds() ? 2 : 0.5));
-	show(*loop, *spheresHere);
+	maxVelocitySq = math::max(maxVelocitySq, Real(spheresHere.leavesBounds() ? 2 : 0.5));
+	show(loop, spheresHere);
 }
 
 /// What the base class does, with these bodies alone.
@@ -97,22 +111,25 @@ void BondedNewtonIntegrator::book(const ddem::SphereSums& sums)
 
 void BondedNewtonIntegrator::show(BondedInteractionLoop& loop, BondedSpheres& spheres)
 {
-	const Onlooker who  = onlooker(*scene, *this, showings, BondedInteractionLoop::neverLooksAtBonds, 0.01, &loop);
-	const bool     lags = who == Onlooker::Python && pythonLooks::watched();
-	if (who == Onlooker::Anybody || (who == Onlooker::Python && !lags)) {
+	const Onlooker who     = onlooker(*scene, *this, showings, BondedInteractionLoop::neverLooksAtBonds, 0.01, &loop);
+	const bool     watched = pythonLooks::watched();
+	if (who == Onlooker::Anybody || !watched) {
 		spheres.showToAll();
-		spheres.showLoads(scene->forces);
+		if (who != Onlooker::Nobody) spheres.showLoads(scene->forces);
 		return;
 	}
 	// the collider reads positions, and changes none
-	const bool picture = who == Onlooker::OtherThreads || (lags && showings.due());
+	const bool python = who == Onlooker::Python, picture = who == Onlooker::OtherThreads || (python && showings.due());
 	if (picture || loop.colliderIsDue()) {
 		showings.begin();
 		spheres.showPicture();
 		showings.end();
 	}
-	if (lags) spheres.showLoads(scene->forces);
-	spheres.hide(lags);
+	if (python) {
+		spheres.showLoads(scene->forces);
+		spheres.expectCommand();
+	}
+	spheres.hide();
 }
 
 void BondedNewtonIntegrator::stopAtNotFinite(const BondedSpheres& spheres) const

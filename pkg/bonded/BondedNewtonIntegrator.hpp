@@ -31,8 +31,9 @@ public:
 		"written for whoever may look: at the end of a run, in O.step, for engines that are due and are not "
 		"known to leave spheres alone, for the collider; and what they change is taken up. A :yref:`PyRunner` "
 		"brings those spheres up to date that it touches. An engine that acts in every step, as "
-		":yref:`TriaxialStressController`, costs that in every step. After O.pause() of a run in the "
-		"background State may be a few steps old, until the next step.\n\n"
+		":yref:`TriaxialStressController`, costs that in every step. After O.pause(), too, "
+		"State is that of the last step. While a run goes on in the background, a shell reads State that may be some "
+		"steps old, and what it sets is lost: pause first.\n\n"
 		"Spheres that only YADE can move are left to it: members of clumps, spheres that a "
 		":yref:`KinematicEngine` drives, without damping of their own (:yref:`State.isDamped`), outside of "
 		":yref:`mask<NewtonIntegrator.mask>` or with all degrees of freedom blocked; all of them with density "
@@ -52,6 +53,7 @@ public:
 	// clang-format on
 
 private:
+	void moveInArrays(BondedInteractionLoop& loop, BondedSpheres& spheres);
 	void moveOthers(const std::vector<Body::id_t>& others);
 	void book(const ddem::SphereSums& sums);
 	void show(BondedInteractionLoop& loop, BondedSpheres& spheres);

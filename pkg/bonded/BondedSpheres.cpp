@@ -92,8 +92,9 @@ void BondedSpheres::readMass(const Body& body, size_t r)
 void BondedSpheres::readAll(Scene& scene, const NewtonIntegrator* mover)
 {
 	leave();
-	inArrays = mover;
-	mask     = mover ? mover->mask : -1;
+	inArrays   = mover;
+	knownMover = mover;
+	mask       = mover ? mover->mask : -1;
 	ids.clear();
 	for (auto& body : bodies)
 		dropped.push_back(std::move(body));
@@ -194,19 +195,31 @@ void BondedSpheres::importShown()
 	come(far);
 }
 
+/// Whether bodies and engines are those that were read, as far as anybody could have changed them.
+bool BondedSpheres::isSame(const Scene& scene, const NewtonIntegrator* mover)
+{
+	if (known != &scene || inArrays != bool(mover) || (mover && mask != mover->mask)
+	    || scene.bodies->size() != sceneBodies)
+		return false;
+	if (shown == Shown::Nothing) return true;
+	bool same = sameEngines(scene);
+	for (const auto id : otherIds)
+		same = same && (*scene.bodies)[id];
+	for (const auto r : touched)
+		same = same && matches(scene, size_t(r));
+	if (!same || shown != Shown::All) return same;
+	const auto size = std::ptrdiff_t(ids.size());
+#pragma omp parallel for schedule(static) reduction(&& : same)
+	for (std::ptrdiff_t r = 0; r < size; r++)
+		same = same && matches(scene, size_t(r));
+	return same;
+}
+
 bool BondedSpheres::update(Scene& scene, const NewtonIntegrator* mover)
 {
 	pythonLooks::end(*this);
-	const bool looked = shown != Shown::Nothing;
-	bool       same   = known == &scene && inArrays == bool(mover) && (!mover || mask == mover->mask)
-	        && scene.bodies->size() == sceneBodies;
-	if (same && looked) same = sameEngines(scene);
-	if (same && shown == Shown::All) {
-		const auto size = std::ptrdiff_t(ids.size());
-#pragma omp parallel for schedule(static) reduction(&& : same)
-		for (std::ptrdiff_t r = 0; r < size; r++)
-			same = same && matches(scene, size_t(r));
-	}
+	const bool looked = shown != Shown::Nothing && (shown == Shown::All || !touched.empty());
+	const bool same   = isSame(scene, mover);
 	if (same) {
 		if (looked && mover) importShown();
 		Real       far  = 0;
@@ -228,7 +241,9 @@ bool BondedSpheres::update(Scene& scene, const NewtonIntegrator* mover)
 		taken.assign(size_t(ddem::sphereRow) * ids.size(), 0.);
 	foreignNow = foreign;
 	foreignNow.insert(foreignNow.end(), loaded.begin(), loaded.end());
-	allForeign = looked || scene.forces.getPermForceUsed();
+	// a command may have added forces, whatever it has touched
+	allForeign = looked || commanded || scene.forces.getPermForceUsed();
+	commanded  = false;
 	if (mover) shown = Shown::Nothing;
 	return !same;
 }
@@ -240,12 +255,14 @@ void BondedSpheres::release()
 	dropped.clear();
 }
 
-void BondedSpheres::takeUpChanges(const Scene&)
+bool BondedSpheres::takeUpChanges(const Scene& scene)
 {
-	if (shown == Shown::Nothing) return;
+	if (shown == Shown::Nothing) return true;
+	if (!isSame(scene, knownMover)) return false;
 	importShown();
 	allForeign = true;
 	shown      = Shown::Nothing;
+	return true;
 }
 
 void BondedSpheres::leave()
@@ -411,11 +428,11 @@ void BondedSpheres::showToAll()
 	rowOfState.clear(); // a body may get another State now
 }
 
-void BondedSpheres::hide(bool look)
+void BondedSpheres::hide()
 {
 	if (!inArrays) return;
-	shown = look ? Shown::Touched : Shown::Nothing;
-	if (look) pythonLooks::begin(*this);
+	shown = Shown::Touched;
+	pythonLooks::begin(*this);
 }
 
 void BondedSpheres::show(const State* state)

@@ -33,8 +33,10 @@ public:
 	/** To be called after an update, without locks that a Python thread may wait for: lets go of bodies that are no
 	 * longer there. The last owner of an object that Python made must have Python's own lock. */
 	void release();
-	/// Takes up what engines have changed between the interactions and the motion.
-	void takeUpChanges(const Scene& scene);
+	/** Takes up what engines have changed between the interactions and the motion.
+	 * \returns whether that could be done: false where bodies, shapes or engines are others than before. Then State has
+	 * all, and this step is YADE's. */
+	bool takeUpChanges(const Scene& scene);
 	/// For good, or until the next update: State of all.
 	void leave();
 
@@ -94,13 +96,17 @@ public:
 	void showPicture() const;
 	/// The same for those who may change it.
 	void showToAll();
-	/// State lags from here on, until Python touches it: `look`; or altogether.
-	void hide(bool look);
+	/// State lags from here on, until Python touches it, at any time before the next update, also where a run was
+	/// paused.
+	void hide();
+	/// A command acts before the next step, and may add forces.
+	void expectCommand() { commanded = true; }
 
 private:
 	enum class Shown { Nothing, Touched, All };
 
 	bool isOrdinary(const Body& body) const;
+	bool isSame(const Scene& scene, const NewtonIntegrator* mover);
 	bool matches(const Scene& scene, size_t r) const;
 	bool sameEngines(const Scene& scene);
 	void readAll(Scene& scene, const NewtonIntegrator* mover);
@@ -125,6 +131,7 @@ private:
 	std::set<Body::id_t>              driven; ///< by kinematic engines
 	std::vector<std::int32_t>         loaded; ///< rows to which engines add forces
 	const Scene*                      known       = nullptr;
+	const NewtonIntegrator*           knownMover  = nullptr;
 	size_t                            sceneBodies = 0;
 	bool                              inArrays    = false;
 	int                               mask        = -1; ///< of the mover
@@ -134,6 +141,7 @@ private:
 	std::vector<std::int32_t> foreignNow;   ///< rows, of this step
 	std::vector<double>       taken;        ///< rows of loads from the container, as far as they have been taken
 	bool                      allForeign = true;
+	bool                      commanded  = false; ///< a command acts before the next step
 
 	Shown                                          shown = Shown::All;
 	std::unordered_map<const State*, std::int32_t> rowOfState; ///< made when Python first touches State in a look

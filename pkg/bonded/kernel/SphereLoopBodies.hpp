@@ -106,7 +106,7 @@ sphereLoop(const SphereArrays& a, std::size_t begin, std::size_t end, const Sphe
 		}
 		speedSquared = select(square > speedSquared, square, speedSquared);
 		// not a number where a velocity or a place is none, or infinite
-		check += Number(0.) * (square + x[0] + x[1] + x[2]);
+		check += Number(0.) * (square + x[0] + x[1] + x[2] + w[0] + w[1] + w[2]);
 		const SpaceRotation<Number> turnedBy = turned(
 		        SpaceRotation<Number> { q[0], q[1], q[2], q[3] },
 		        SpaceVector<Number> { dt * w[0], dt * w[1], dt * w[2] });
