@@ -111,7 +111,7 @@ void BondedNewtonIntegrator::book(const ddem::SphereSums& sums)
 
 void BondedNewtonIntegrator::show(BondedInteractionLoop& loop, BondedSpheres& spheres)
 {
-	const Onlooker who     = onlooker(*scene, *this, showings, BondedInteractionLoop::neverLooksAtBonds, 0.01, &loop);
+	const Onlooker who = onlooker(*scene, *this, showings, BondedInteractionLoop::neverLooksAtBonds, 0.01, &loop);
 	const bool     watched = pythonLooks::watched();
 	if (who == Onlooker::Anybody || !watched) {
 		spheres.showToAll();
@@ -119,7 +119,8 @@ void BondedNewtonIntegrator::show(BondedInteractionLoop& loop, BondedSpheres& sp
 		return;
 	}
 	// the collider reads positions, and changes none
-	const bool python = who == Onlooker::Python, picture = who == Onlooker::OtherThreads || (python && showings.due());
+	const bool python  = who == Onlooker::Python,
+	           picture = who == Onlooker::OtherThreads || (python && showings.due());
 	if (picture || loop.colliderIsDue()) {
 		showings.begin();
 		spheres.showPicture();

@@ -34,8 +34,8 @@ public:
 	 * longer there. The last owner of an object that Python made must have Python's own lock. */
 	void release();
 	/** Takes up what engines have changed between the interactions and the motion.
-	 * \returns whether that could be done: false where bodies, shapes or engines are others than before. Then State has
-	 * all, and this step is YADE's. */
+	 * \returns whether that could be done: false where bodies, shapes or engines are others than before.
+	 * Then State has all, and this step is YADE's. */
 	bool takeUpChanges(const Scene& scene);
 	/// For good, or until the next update: State of all.
 	void leave();

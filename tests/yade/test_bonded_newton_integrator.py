@@ -1,5 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """BondedNewtonIntegrator moves bonded spheres in arrays as NewtonIntegrator moves bodies, whatever else a scene has."""
+import builtins
 import math
 import subprocess
 import sys
@@ -8,14 +9,15 @@ import numpy as np
 import pytest
 
 from yade import (
-	BondedInteractionLoop, BondedMat, BondedNewtonIntegrator, ForceEngine, FrictMat, GravityEngine,
+	Bo1_Sphere_Aabb, BondedInteractionLoop, BondedMat, BondedNewtonIntegrator, ForceEngine, FrictMat, GravityEngine,
 	HarmonicMotionEngine, Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, PyRunner, RotationEngine,
-	TorqueEngine, TranslationEngine, TriaxialStressController, Vector3, utils
+	SpatialQuickSortCollider, TorqueEngine, TranslationEngine, TriaxialStressController, Vector3, utils
 )
 from yade import ddem
 from yade.ddem import bonded, packing
 
 from recording import run_recording
+from waiting import BackgroundRun, until
 
 RADIUS = 1e-3
 
@@ -220,7 +222,6 @@ def with_a_command_that_changes_spheres():
 		O.bodies[ids[5]].state.pos += Vector3(1e-8, 0, 0)
 		O.forces.addF(ids[6], Vector3(0, 0, 10))
 
-	import builtins
 	builtins.change_spheres = change
 	O.engines = [*O.engines, PyRunner(command="change_spheres()", iterPeriod=7)]
 	return sample, lambda: None
@@ -316,7 +317,6 @@ def test_a_command_sees_and_changes_what_it_touches():
 			to.append((*state.pos, *state.vel, *state.ori, *O.forces.f(first)))
 
 		if together:
-			import builtins
 			builtins.record_sphere = record
 			O.engines = [*O.engines, PyRunner(command="record_sphere()", iterPeriod=1)]
 			O.run(30, True)
@@ -449,7 +449,144 @@ def test_crushing_does_not_depend_on_threads(tmp_path):
 	assert found[0] == found[1]
 
 
+def grow(ids):
+	O.bodies[ids[3]].shape.radius *= 1.03
+
+
+def mask_out(ids):
+	O.bodies[ids[3]].mask = 4
+
+
+def undamp(ids):
+	O.bodies[ids[3]].state.isDamped = False
+
+
+def make_heavy(ids):
+	O.bodies[ids[3]].state.mass *= 2
+	O.bodies[ids[4]].state.inertia = Vector3(1, 2, 3) * O.bodies[ids[4]].state.inertia[0]
+
+
+def erase_others(ids):
+	O.bodies.erase(max(b.id for b in O.bodies))
+	O.bodies.erase(ids[7])
+
+
+def add_one(ids):
+	O.bodies.append(utils.sphere((0.005, 0.03 + 1e-4 * O.iter, 0), RADIUS, material="rock"))
+
+
+def clump(ids):
+	O.bodies.clump([ids[10], ids[11]])
+
+
+def change_material(ids):
+	O.bodies[ids[3]].mat = O.materials["other"]
+
+
+@pytest.mark.parametrize("place", ("before the motion", "at the end"))
+@pytest.mark.parametrize(
+	"change", (grow, mask_out, undamp, make_heavy, erase_others, add_one, clump, change_material)
+)
+def test_a_command_may_change_bodies_and_the_scene(change, place):
+	"""Now and then, not in every step: what it did must not be forgotten."""
+
+	def build():
+		sample = shaken()
+		ids = sample.ids.tolist()
+		O.materials.append(BondedMat(label="other", young=50e9))
+		O.bodies.append(utils.sphere((0.05, 0.05, 0), RADIUS, material="rock"))
+		done = []
+
+		def command():
+			if len(done) < 1:
+				change(ids)
+			done.append(1)
+
+		builtins.change_scene = command
+		runner = PyRunner(command="change_scene()", iterPeriod=20, firstIterRun=20)
+		O.engines[-1].mask = 1
+		last = O.engines[-1]
+		O.engines = [*O.engines[:-1], *((runner, last) if place == "before the motion" else (last, runner))]
+		return sample, lambda: len(done)
+
+	one, two = with_both(build, 120, damping=0.2)
+	agree(one[0], two[0], 1e-6)
+	assert one[1] == two[1] >= 5
+
+
+def test_a_loop_that_is_dead_moves_nothing():
+	def build():
+		sample = shaken()
+		O.run(30, True)
+		O.engines[2].dead = True
+		return sample, lambda: O.engines[2].dead
+
+	one, two = with_both(build, 60)
+	agree(one[0], two[0], 1e-7)
+
+
+def test_other_colliders_act_in_every_step():
+	def build():
+		sample = shaken()
+		O.engines = [O.engines[0], SpatialQuickSortCollider([Bo1_Sphere_Aabb()]), *O.engines[2:]]
+		return sample, lambda: None
+
+	one, two = with_both(build, 40)
+	agree(one[0], two[0], 1e-7)
+
+
+def test_a_scene_that_loses_all_its_bodies_goes_on():
+	shaken()
+	O.run(10, True)
+	O.bodies.clear()
+	O.step()
+	assert len(bonded.law().bondArrays()["ids"]) == 0
+
+
+def test_bonds_may_be_asked_for_while_a_run_with_a_command_begins():
+	"""Python's lock and ours are never taken in both orders."""
+	sample = shaken()
+	builtins.see_spheres = lambda: None
+	O.engines = [*O.engines, PyRunner(command="see_spheres()", iterPeriod=50)]
+	run = BackgroundRun()
+	for _ in range(300):
+		assert len(sample.bonds) == sample.initial_bonds
+		assert sample.positions.shape == (len(sample), 3)
+	until(lambda: O.iter > 500)
+	run.pause()
+
+
+def test_a_pause_shows_the_last_step_and_what_is_set_then_counts():
+	sample = shaken()
+	one = int(sample.ids[0])
+	for _ in range(60):
+		begin = O.iter
+		run = BackgroundRun()
+		until(lambda: O.iter > begin + 3)
+		run.pause()
+		assert np.array_equal(sample.positions[0], np.array(O.bodies[one].state.pos, float))
+		O.bodies[one].state.vel = Vector3(1e3, 0, 0)
+		O.step()
+		assert O.bodies[one].state.vel[0] > 500
+		O.bodies[one].state.vel = Vector3(0, 0, 0)
+
+
 # ---- errors ----
+
+
+def test_after_an_error_state_is_what_the_user_sees_and_sets():
+	sample = shaken()
+	O.run(30, True)
+	right = O.dt
+	O.dt = 100 * right
+	with pytest.raises(RuntimeError, match="above the critical time step"):
+		O.step()
+	one = int(sample.ids[0])
+	assert np.array_equal(sample.positions[0], np.array(O.bodies[one].state.pos, float))
+	O.dt = right
+	O.bodies[one].state.vel = Vector3(500, 0, 0)
+	O.step()
+	assert O.bodies[one].state.vel[0] == pytest.approx(500, rel=0.01)
 
 
 def test_must_come_after_the_interactions():
@@ -476,7 +613,7 @@ def test_a_free_sphere_that_is_not_a_number_is_named():
 	O.engines = bonded.engines()
 	O.dt = 1e-6
 	O.step()
-	O.bodies[one].state.vel = Vector3(math.inf, 0, 0)
+	O.bodies[one].state.angVel = Vector3(0, math.nan, 0)
 	with pytest.raises(
 		RuntimeError, match=rf"motion of the bonded sphere #{one}, at .* became infinite or not a number"
 	):
