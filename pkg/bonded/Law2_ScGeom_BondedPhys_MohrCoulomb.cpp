@@ -248,7 +248,8 @@ namespace {
 			if (!all.empty() && Omega::instance().isRunning()) return all;
 			loop->expose();
 		}
-		std::vector<BondNow> all;
+		std::vector<BondNow>              all;
+		const std::lock_guard<std::mutex> lock(current->interactions->drawloopmutex); // a run may begin now
 		for (const auto& I : *current->interactions) {
 			const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
 			const auto* geom = dynamic_cast<const ScGeom*>(I->geom.get());
@@ -291,6 +292,7 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 	for (const auto& engine : current->engines)
 		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) loop->expose();
 	Real tension = 0, bending = 0, shear = 0, torsion = 0;
+	const std::lock_guard<std::mutex> lock(current->interactions->drawloopmutex); // a run may begin now
 	for (const auto& I : *current->interactions) {
 		const auto* phys = dynamic_cast<const BondedPhys*>(I->phys.get());
 		if (!phys || !phys->bonded || !I->geom) continue;

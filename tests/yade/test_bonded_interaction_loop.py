@@ -244,6 +244,21 @@ def test_may_be_asked_for_bonds_at_any_time():
 	assert len(sample.bonds) + bonded.law().brokenCount() == sample.initial_bonds
 
 
+def test_may_be_asked_for_bonds_while_the_first_step_begins():
+	"""The collider fills the list of interactions then."""
+	spheres = packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200)
+	for _ in range(15):
+		O.reset()
+		O.materials.append(BondedMat(label="rock"))
+		sample = bonded.append(spheres, "rock")
+		O.engines = bonded.engines()
+		O.dt = bonded.time_step(0.5)
+		run = BackgroundRun()
+		while O.iter < 3:
+			assert len(sample.bonds) == sample.initial_bonds
+		run.pause()
+
+
 def test_survives_a_bond_erased_after_a_pause():
 	sample, _ = specimen(cohesion=1e15)
 	for _ in range(20):
