@@ -217,7 +217,7 @@ void BondedInteractionLoop::actOnOthers()
 	const bool            removeUnseen = all.iterColliderLastRun >= 0 && all.iterColliderLastRun == scene->iter;
 	const long            size         = long(others.size());
 	std::exception_ptr    failure; // none may leave a parallel loop
-#pragma omp parallel for schedule(guided)
+#pragma omp parallel for schedule(guided) if (size > 20)
 	for (long i = 0; i < size; i++) {
 		const shared_ptr<Interaction>& I = others[size_t(i)];
 		try {
@@ -413,7 +413,7 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 /// One step of the contacts that there were at its beginning.
 void BondedInteractionLoop::advanceContacts(Law& bondLaw, std::size_t count)
 {
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (count > 100) // else waking threads takes longer
 	for (std::ptrdiff_t k = 0; k < std::ptrdiff_t(count); k++) {
 		Contact& contact = contacts[size_t(k)];
 		contact.loads    = bondLaw.advance(contact.state, motionOf(size_t(contact.pair)));

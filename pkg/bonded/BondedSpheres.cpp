@@ -224,7 +224,7 @@ bool BondedSpheres::update(Scene& scene, const NewtonIntegrator* mover)
 		if (looked && mover) importShown();
 		Real       far  = 0;
 		const auto size = std::ptrdiff_t(guests.size());
-#pragma omp parallel for schedule(static) reduction(max : far)
+#pragma omp parallel for schedule(static) reduction(max : far) if (size > 200)
 		for (std::ptrdiff_t k = 0; k < size; k++)
 			far = std::max(far, import(size_t(guests[size_t(k)])));
 		if (size > 0) come(far);

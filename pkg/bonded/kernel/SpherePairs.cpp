@@ -59,7 +59,7 @@ void SpherePairs::find(const double* pose, double moved, std::vector<std::int32_
 	const auto        groups = std::ptrdiff_t(next.size());
 	std::vector<char> found(std::size_t(groups), 0);
 	bool              any = false;
-#pragma omp parallel for schedule(static) reduction(|| : any)
+#pragma omp parallel for schedule(static) reduction(|| : any) if (groups > 200)
 	for (std::ptrdiff_t g = 0; g < groups; g++) {
 		const auto group = std::size_t(g);
 		if (way < next[group]) continue;
