@@ -49,7 +49,7 @@ class Laws:
 			)
 		self.best = good[0]
 		self.order = self._exponent(good[:2], lambda p: p.error)
-		self._growth = self._exponent(good[:2], lambda p: p.cpu_s)
+		self._growth = self._exponent(good[:2], self._work(good[:2]))
 		self._second = good[1]
 		self._bytes = self._exponent(good[:2], lambda p: p.cost.get("memory_MB", math.nan))
 		self.settled = None
@@ -60,6 +60,14 @@ class Laws:
 			raise ValueError(f"{self.quantity}: the errors of its rungs do not fall with what they cost")
 
 	@staticmethod
+	def _work(points):
+		"""What grows with the cost: particle steps, which no clock disturbs;
+		seconds where they are the same."""
+		counted = lambda p: p.cost.get("steps", 0) * p.cost.get("particles", 0)
+		counts = {counted(p) for p in points}
+		return counted if len(counts) == len(points) and 0 not in counts else lambda p: p.cpu_s
+
+	@staticmethod
 	def _exponent(points, value):
 		return float(convergence.power_law([p.step for p in points], [value(p) for p in points])[1])
 
@@ -67,7 +75,7 @@ class Laws:
 		"""Processor time at so many times the finest step [s]."""
 		fine, coarse = self.best.cost, self._second.cost
 		if not all(one.get(name, 0) > 0 for one in (fine, coarse) for name in ("steps", "particles")):
-			return self.best.cpu_s * finer**self._growth
+			return self.best.cpu_s * finer**self._growth  # of seconds, as nothing is counted
 		pair = (self.best, self._second)
 		of_particles, of_steps = (
 			round(self._exponent(pair, lambda p, name=name: p.cost[name]))
