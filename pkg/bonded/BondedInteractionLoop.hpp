@@ -42,7 +42,7 @@ public:
 		"threads in the last digits, as in all of YADE.\n\n"
 		"With a :yref:`BondedNewtonIntegrator` the spheres are moved in these arrays, too. With YADE's own "
 		":yref:`NewtonIntegrator` their State is read and their loads are added to "
-		":yref:`O.forces<Omega.forces>` in every step, which takes about twice as long.\n\n"
+		":yref:`O.forces<Omega.forces>` in every step, which takes two and a half to four times as long.\n\n"
 		":yref:`Interaction.geom`, forces and stresses of bonds are written back whenever somebody may look "
 		"(end of a run, O.step, periodic engines that are due, engines of unknown kind; a :yref:`PyRunner` "
 		"where it reads an interaction's geometry or physics). After O.pause() of "
