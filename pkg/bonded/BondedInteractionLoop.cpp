@@ -155,8 +155,7 @@ void BondedInteractionLoop::throwFailure()
 
 void stopAfterStep(Scene& scene, const std::string& text)
 {
-	for (const auto& engine : scene.engines)
-		if (auto* loop = dynamic_cast<BondedInteractionLoop*>(engine.get())) return loop->stopAfterStep(text);
+	if (auto* const loop = BondedInteractionLoop::in(scene)) return loop->stopAfterStep(text);
 	std::cerr << "ERROR: " << text << std::endl; // an InteractionLoop ends the program where a functor throws
 	Omega::instance().pause();
 }

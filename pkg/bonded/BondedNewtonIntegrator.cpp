@@ -44,6 +44,7 @@ void BondedNewtonIntegrator::action()
 	const std::lock_guard<std::mutex> lock(loop->busy);
 	if (!spheresHere->takeUpChanges(*scene)) {
 		inArrays = 0;
+		spheresHere->showLoads(scene->forces); // such as damping that came to the arrays alone
 		return NewtonIntegrator::action();
 	}
 	try {

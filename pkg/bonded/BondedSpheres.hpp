@@ -48,7 +48,6 @@ public:
 	{
 		return id >= 0 && size_t(id) < row.size() ? row[size_t(id)] : -1;
 	}
-	bool isGuest(size_t r) const { return guest[r]; }
 	bool isClumpMember(size_t r) const { return bodies[r]->isClumpMember(); }
 	/// Number of rows that are moved here.
 	long movedHere() const { return long(ids.size() - guests.size()); }
