@@ -148,7 +148,7 @@ boost::python::dict brokenArrays(const std::vector<shared_ptr<BrokenBond>>& reco
 	whole("id1", [](const BrokenBond& b) { return long(b.id1); });
 	whole("id2", [](const BrokenBond& b) { return long(b.id2); });
 	whole("step", [](const BrokenBond& b) { return b.iter; });
-	whole("tension", [](const BrokenBond& b) { return long(b.tension); });
+	whole("mode", [](const BrokenBond& b) { return long(b.mode); });
 	real("time", &BrokenBond::time);
 	real("radius", &BrokenBond::radius);
 	real("normal_stress", &BrokenBond::normalStress);

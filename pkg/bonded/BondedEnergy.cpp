@@ -15,6 +15,7 @@ void BondedEnergy::find(EnergyTracker& book)
 		                                                                      { "contactElastic", true },
 		                                                                      { "wallElastic", true },
 		                                                                      { "bondBroken", false },
+		                                                                      { "bondSoftening", false },
 		                                                                      { "friction", false },
 		                                                                      { "contactDamping", false } } };
 	for (size_t i = 0; i < EntryCount; i++) {

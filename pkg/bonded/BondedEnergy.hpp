@@ -14,7 +14,16 @@ namespace yade {
  */
 class BondedEnergy {
 public:
-	enum Entry { BondElastic, ContactElastic, WallElastic, BondBroken, Friction, ContactDamping, EntryCount };
+	enum Entry {
+		BondElastic,
+		ContactElastic,
+		WallElastic,
+		BondBroken,
+		BondSoftening,
+		Friction,
+		ContactDamping,
+		EntryCount
+	};
 
 	/// Adds to an entry. Those named …Elastic start from zero in every step. \param value [J]
 	void add(EnergyTracker& book, Entry entry, Real value)

@@ -53,7 +53,7 @@ BondedInteractionLoop* BondedInteractionLoop::in(const Scene& scene)
 	return nullptr;
 }
 
-Law2_ScGeom_BondedPhys_MohrCoulomb* BondedInteractionLoop::law() const
+Law2_ScGeom_BondedPhys_Bonded* BondedInteractionLoop::law() const
 {
 	for (const auto& functor : lawDispatcher->functors)
 		if (auto* found = dynamic_cast<Law*>(functor.get())) return found;
@@ -323,22 +323,9 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 	std::sort(held.begin(), held.end(), byIds);
 	std::sort(found.begin(), found.end(), byIds);
 
-	system.clear();
-	overloaded.clear();
-	for (size_t j = 0; j < held.size(); j++) {
-		const Interaction& I = *held[j].interaction;
-		const BondedPhys&  phys = *held[j].phys;
-		system.add(
-		        spheres.rowOf(I.getId1()),
-		        spheres.rowOf(I.getId2()),
-		        phys.bond(static_cast<const ScGeom&>(*I.geom)),
-		        phys.strength());
-		if (bondLaw.bondConvention() == ddem::BondConvention::Esys
-		    && ddem::bondFailure(phys.strength(), { phys.normalStress, phys.shearStress })
-		            != ddem::BondFailure::None)
-			overloaded.push_back(std::int32_t(j));
-	}
+	takeUpBonds(bondLaw, std::exchange(held, {}));
 	system.assemble(spheres.ids.size());
+	held.resize(system.size());
 	search.clear();
 	contacts.clear();
 	fresh.clear();
@@ -360,6 +347,26 @@ void BondedInteractionLoop::collect(Law& bondLaw)
 	knownScene = scene;
 	knownSize  = scene->interactions->size();
 	exposed    = true;
+}
+
+/// Fills the system with bonds, those of one criterion after the other, and `held` with what they belong to.
+void BondedInteractionLoop::takeUpBonds(Law& bondLaw, std::vector<Held> bonds)
+{
+	system.clear();
+	overloaded.clear();
+	const bool esys = bondLaw.bondConvention() == ddem::BondConvention::Esys;
+	std::stable_sort(bonds.begin(), bonds.end(), [](const Held& a, const Held& b) {
+		return a.phys->criterion < b.phys->criterion;
+	});
+	for (const Held& bond : bonds) {
+		const Interaction& I     = *bond.interaction;
+		const auto         place = system.add(
+                        spheres.rowOf(I.getId1()), spheres.rowOf(I.getId2()),
+                        bond.phys->bond(static_cast<const ScGeom&>(*I.geom)));
+		held.resize(place + 1); // places that hold no bond stay empty
+		held[place] = bond;
+		if (esys && bondLaw.failsInEsys(*bond.phys)) overloaded.push_back(std::int32_t(place));
+	}
 }
 
 /// Takes a pair into the search; it is followed from now on if it touches.
@@ -389,20 +396,20 @@ void BondedInteractionLoop::advance(Law& bondLaw)
 	parted.clear();
 	if (esys) breakOverloaded(bondLaw, overloaded); // ESyS-Particle tests the loads of the last step
 	double* const load   = spheres.motion.load.data();
-	const Real stored = system.step(bondLaw.bondConvention(), book, spheres.motion.pose.data(), load, overloaded);
+	const auto energies = system.step(bondLaw.bondConvention(), book, spheres.motion.pose.data(), load, overloaded);
 	exposed              = false;
 	for (const std::int32_t bond : overloaded) {
 		const auto& row = system.row(size_t(bond));
 		if (!held[size_t(bond)].interaction) continue; // broken, but one of its bodies has lost its place
 		if (!std::isfinite(row.normalStress) || !std::isfinite(row.shearStress)) stopAtNotFinite(bond);
 	}
-	Real lost = 0;
+	Real broke = 0; // what was stored in bonds that break now
 	if (!esys) {
 		for (const std::int32_t bond : overloaded)
-			if (held[size_t(bond)].interaction) lost += system.row(size_t(bond)).energy;
+			if (held[size_t(bond)].interaction) broke += system.row(size_t(bond)).energy;
 		breakOverloaded(bondLaw, overloaded);
 	}
-	if (book) bondLaw.bookBondEnergy(stored - lost);
+	if (book) bondLaw.bookBondEnergy(energies.stored - broke, energies.lost);
 	search.find(spheres.motion.pose.data(), spheres.takeWay(), fresh);
 	advanceContacts(bondLaw, before);
 	for (const Parted& pair : parted)
@@ -488,6 +495,7 @@ void BondedInteractionLoop::breakOverloaded(Law& bondLaw, const std::vector<std:
 		                                      : ddem::BondStress { row.normalStress, row.shearStress };
 		const std::int32_t first = system.firstOf(place), second = system.secondOf(place);
 		exposeGeometry(*h.interaction);
+		h.phys->setMemory(system.memoryOf(place));
 		spheres.show({ first, second });
 		const ddem::ContactLoads loads = bondLaw.breakBond(*h.interaction, last);
 		if (scene->trackEnergy) bondLaw.bookContact(loads);
@@ -573,6 +581,7 @@ void BondedInteractionLoop::writeBack()
 		phys.shearForce      = -force - phys.normalForce;
 		phys.normalStress    = row.normalStress;
 		phys.shearStress     = row.shearStress;
+		phys.setMemory(system.memoryOf(j));
 	}
 	for (Contact& contact : contacts) {
 		const Pair& pair = pairs[size_t(contact.pair)];

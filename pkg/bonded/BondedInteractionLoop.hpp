@@ -5,7 +5,7 @@
 #include <pkg/bonded/BondedArrays.hpp>
 #include <pkg/bonded/BondedSpheres.hpp>
 #include <pkg/bonded/BondedTimeStep.hpp>
-#include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
+#include <pkg/bonded/Law2_ScGeom_BondedPhys_Bonded.hpp>
 
 #include <pkg/bonded/kernel/SpherePairs.hpp>
 #include <pkg/ddem/Onlookers.hpp>
@@ -47,7 +47,7 @@ public:
 		"(end of a run, O.step, periodic engines that are due, engines of unknown kind; a :yref:`PyRunner` "
 		"where it reads an interaction's geometry or physics). After O.pause() of "
 		"a run in the background they may be a few steps old until "
-		":yref:`bonds<Law2_ScGeom_BondedPhys_MohrCoulomb.bonds>` is called. Stiffnesses and radii changed by "
+		":yref:`bonds<Law2_ScGeom_BondedPhys_Bonded.bonds>` is called. Stiffnesses and radii changed by "
 		"hand are taken up after such a look.\n\n"
 		"Bonds are computed one by one where the base class must be asked: "
 		"with :yref:`callbacks<InteractionLoop.callbacks>`, "
@@ -55,7 +55,7 @@ public:
 		"its own, or periodic boundaries.\n\n"
 		"Errors: RuntimeError naming the bond where forces become infinite or not a number; naming the pair "
 		"where O.dt is above the critical step "
-		"(:yref:`criticalTimeStep<Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep>`); "
+		"(:yref:`criticalTimeStep<Law2_ScGeom_BondedPhys_Bonded.criticalTimeStep>`); "
 		"and under mpirun with several processes.",
 		/*attrs*/,
 		/*ctor*/,
@@ -101,7 +101,7 @@ private:
 		std::int32_t       first, second; ///< rows
 		ddem::ContactLoads loads;
 	};
-	using Law = Law2_ScGeom_BondedPhys_MohrCoulomb;
+	using Law = Law2_ScGeom_BondedPhys_Bonded;
 
 	Law* law() const;
 	bool oneByOne() const;
@@ -110,6 +110,7 @@ private:
 	void leaveBatched();
 	bool interactionsAreKnown();
 	void collect(Law& law);
+	void takeUpBonds(Law& law, std::vector<Held> bonds);
 	bool followsPairs() const;
 	void actOnOthers();
 	bool act(const shared_ptr<Interaction>& I);

@@ -2,13 +2,20 @@
 // Material of rigid particles joined by breakable bonds.
 #include <pkg/bonded/BondedMat.hpp>
 
+#include <algorithm>
 #include <sstream>
+#include <tuple>
 
 namespace yade {
 
 DDEM_PLUGIN((BondedMat))
 
 namespace {
+
+	std::string nameOf(const BondedMat& material)
+	{
+		return material.getClassName() + (material.label.empty() ? "" : " '" + material.label + "'");
+	}
 
 	/// Throws "BondedMat 'rock': name = value unit complaint" unless `good`.
 	void
@@ -17,9 +24,7 @@ namespace {
 	{
 		if (good) return;
 		std::ostringstream text;
-		text << material.getClassName();
-		if (!material.label.empty()) text << " '" << material.label << "'";
-		text << ": " << name << " = " << value << " " << unit << " " << complaint;
+		text << nameOf(material) << ": " << name << " = " << value << " " << unit << " " << complaint;
 		throw std::invalid_argument(text.str());
 	}
 
@@ -32,21 +37,7 @@ void BondedMat::validate() const
 	};
 	positive("young", young, "Pa");
 	positive("density", density, "kg/m³");
-	positive("cohesion", cohesion, "Pa");
 	require(poisson > -1 && poisson < 0.5, *this, "poisson", poisson, "[-]", "must lie between -1 and 0.5");
-	require(!(bondFrictionAngle >= Mathr::PI / 2),
-	        *this,
-	        "bondFrictionAngle",
-	        bondFrictionAngle,
-	        "rad",
-	        "is a right angle or more: given in degrees? Use radians(…)");
-	require(bondFrictionAngle >= 0, *this, "bondFrictionAngle", bondFrictionAngle, "rad", "must not be negative");
-	require(tensileStrength > 0,
-	        *this,
-	        "tensileStrength",
-	        tensileStrength,
-	        "Pa",
-	        "must be positive (infinite: the cut-off is cohesion/tan(bondFrictionAngle))");
 	require(frictionDynamic >= 0 && std::isfinite(frictionDynamic), *this, "frictionDynamic", frictionDynamic,
 	        "[-]", "must not be negative");
 	for (const auto& [name, value] :
@@ -58,6 +49,56 @@ void BondedMat::validate() const
 	        frictionStatic,
 	        "[-]",
 	        "must not be below frictionDynamic");
+	const CriterionOfMaterial own = ownCriterion();
+	own.criterion->check(own.values, nameOf(*this));
+	if (!between.empty() && (between.size() != 2 || between[0] == between[1]))
+		throw std::invalid_argument(
+		        nameOf(*this) + ": between must be two different labels of materials, or empty");
+}
+
+CriterionOfMaterial BondedMat::ownCriterion() const
+{
+	CriterionOfMaterial own = criterion();
+	if (own.material == std::type_index(typeid(*this))) return own;
+	throw std::logic_error(
+	        getClassName()
+	        + " derives from a material of bonds, but does not say its own criterion: its bonds "
+	          "would break as those of "
+	        + own.criterion->name() + "; see DDEM_CRITERION_OF_MATERIAL in BondedMat.hpp");
+}
+
+const BondedMat* materialBetween(const Scene& scene, const BondedMat& a, const BondedMat& b)
+{
+	const BondedMat* found = nullptr;
+	if (&a == &b) return found;
+	for (const auto& material : scene.materials) {
+		const auto* bonded = dynamic_cast<const BondedMat*>(material.get());
+		if (!bonded || bonded->between.size() != 2) continue;
+		const auto& [one, other] = std::tie(bonded->between[0], bonded->between[1]);
+		if (!((one == a.label && other == b.label) || (one == b.label && other == a.label))) continue;
+		if (found)
+			throw std::invalid_argument(
+			        nameOf(*found) + " and " + nameOf(*bonded) + " are both between '" + a.label + "' and '"
+			        + b.label + "'");
+		found = bonded;
+	}
+	return found;
+}
+
+void checkMaterialsBetween(const Scene& scene)
+{
+	for (const auto& material : scene.materials) {
+		const auto* bonded = dynamic_cast<const BondedMat*>(material.get());
+		if (!bonded) continue;
+		for (const std::string& label : bonded->between)
+			if (std::none_of(scene.materials.begin(), scene.materials.end(), [&](const auto& other) {
+				    return other && other->label == label
+				            && dynamic_cast<const BondedMat*>(other.get());
+			    }))
+				throw std::invalid_argument(
+				        nameOf(*bonded) + " is between '" + bonded->between[0] + "' and '"
+				        + bonded->between[1] + "', but O.materials has no BondedMat '" + label + "'");
+	}
 }
 
 } // namespace yade

@@ -4,20 +4,22 @@
 
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
+#include <algorithm>
+
 namespace yade {
 
 DDEM_PLUGIN((BondedPhys))
 
 std::atomic<long> BondedPhys::bondsMade { 0 };
 
-shared_ptr<BondedPhys> BondedPhys::contact(const BondedMat& a, const BondedMat& b, Real reach)
+shared_ptr<BondedPhys>
+BondedPhys::contact(const Scene& scene, const BondedMat& first, const BondedMat& second, Real reach)
 {
+	const BondedMat* const between = materialBetween(scene, first, second);
+	const BondedMat &      a = between ? *between : first, &b = between ? *between : second;
 	auto phys             = boost::make_shared<BondedPhys>();
 	phys->young           = 2 * a.young * b.young / (a.young + b.young); // two halves in series
 	phys->poisson         = (a.poisson + b.poisson) / 2;
-	phys->cohesion        = math::min(a.cohesion, b.cohesion);
-	phys->tanBondFriction = math::min(a.strength().frictionCoefficient, b.strength().frictionCoefficient);
-	phys->tensileStrength = math::min(a.tensileStrength, b.tensileStrength);
 	phys->frictionStatic  = math::min(a.frictionStatic, b.frictionStatic);
 	phys->frictionDynamic = math::min(a.frictionDynamic, b.frictionDynamic);
 	phys->gradualFriction = a.gradualFriction || b.gradualFriction;
@@ -37,17 +39,22 @@ Real BondedPhys::reachOf(const Interaction& I)
 	return 2 * (sphere1 ? geom.radius1 : geom.radius2);
 }
 
-void BondedPhys::join(const State& state1, const State& state2, const Vector3r& branch)
+void BondedPhys::join(
+        const ddem::BondCriterion& breaks, const ddem::BondStrength& given, Real radius, const State& state1,
+        const State& state2, const Vector3r& branch)
 {
-	const Real                length = branch.norm();
-	const ddem::BondSection   section(length / 2); // ESyS-Particle's mean radius, d0/2
-	const ddem::BondStiffness stiffness = ddem::bondStiffness(elasticity(), section, length);
+	const Real                length    = branch.norm();
+	const ddem::BondStiffness stiffness = ddem::bondStiffness(elasticity(), ddem::BondSection(radius), length);
 	const ddem::Bond made = ddem::makeBond(
 	        stiffness, 0, 0, ddem::spaceVector(branch), ddem::rotation(state1.ori), ddem::rotation(state2.ori));
 
 	bonded     = true;
+	criterion  = breaks.name();
+	found      = &breaks;
+	strengthNumbers = Eigen::Map<const Vector6r>(given.data());
+	memoryNumbers.assign(breaks.memoryNames().empty() ? 0 : ddem::mostMemories, 0.);
 	bondLength = length;
-	bondRadius = section.radius;
+	bondRadius = radius;
 	kn         = stiffness.normal;
 	ks         = stiffness.shear;
 	kb         = stiffness.bending;
@@ -59,9 +66,43 @@ void BondedPhys::join(const State& state1, const State& state2, const Vector3r& 
 	bondsMade++;
 }
 
+const ddem::BondCriterion& BondedPhys::breaks() const
+{
+	if (!found) found = &ddem::bondCriterion(criterion);
+	return *found;
+}
+
+void BondedPhys::setMemory(const ddem::BondMemory& remembered)
+{
+	if (!memoryNumbers.empty()) memoryNumbers.assign(remembered.begin(), remembered.end());
+}
+
+namespace {
+
+	boost::python::dict named(const std::vector<std::string>& names, const Real* values)
+	{
+		boost::python::dict result;
+		for (size_t i = 0; i < names.size(); i++)
+			result[names[i]] = values[i];
+		return result;
+	}
+
+} // namespace
+
+boost::python::dict BondedPhys::pyStrength() const
+{
+	return bonded ? named(breaks().strengthNames(), strengthNumbers.data()) : boost::python::dict();
+}
+
+boost::python::dict BondedPhys::pyMemory() const
+{
+	return bonded ? named(breaks().memoryNames(), memoryNumbers.data()) : boost::python::dict();
+}
+
 void BondedPhys::part(Real reach)
 {
 	bonded       = false;
+	memoryNumbers.clear();
 	kr = ktw     = 0;
 	normalStress = shearStress = 0;
 	sliding                    = false;
@@ -78,10 +119,21 @@ void BondedPhys::setContactStiffness()
 	ks                                     = stiffness.shear;
 }
 
-ddem::Bond BondedPhys::bond(const ScGeom& geom) const
+ddem::BreakableBond BondedPhys::bond(const ScGeom& geom) const
 {
-	return { { kn, ks, kb, kt },    bondLength, geom.radius1, geom.radius2, ddem::rotation(frame1),
-		 ddem::rotation(frame2) };
+	ddem::BreakableBond result { { { kn, ks, kb, kt },
+		                       bondLength,
+		                       geom.radius1,
+		                       geom.radius2,
+		                       bondRadius,
+		                       ddem::rotation(frame1),
+		                       ddem::rotation(frame2) },
+		                     &breaks(),
+		                     {},
+		                     {} };
+	std::copy_n(strengthNumbers.data(), ddem::mostStrengths, result.strength.begin());
+	std::copy(memoryNumbers.begin(), memoryNumbers.end(), result.memory.begin());
+	return result;
 }
 
 BondedContact BondedPhys::contactNow(Real mass1, Real mass2) const

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pkg/bonded/BondedMat.hpp>
+#include <pkg/bonded/kernel/BondSystem.hpp>
 
 #include <atomic>
 
@@ -27,13 +28,18 @@ class BondedPhys : public RotStiffFrictPhys {
 public:
 	virtual ~BondedPhys() = default;
 
-	/// A contact between two materials. \param reach sum of the radii [m], see reachOf
-	static shared_ptr<BondedPhys> contact(const BondedMat& a, const BondedMat& b, Real reach);
+	/// A contact between two materials, or of the one between them. \param reach sum of the radii [m], see reachOf
+	static shared_ptr<BondedPhys> contact(const Scene& scene, const BondedMat& a, const BondedMat& b, Real reach);
 	/// Sum of the radii of an interaction [m], which sets its springs.
 	/// What is no sphere counts as the sphere's image.
 	static Real reachOf(const Interaction& I);
-	/// Joins the two particles as they are now. \param branch from the centre of particle 1 to that of 2 [m]
-	void join(const State& state1, const State& state2, const Vector3r& branch);
+	/** Joins the two particles as they are now.
+	 * \param breaks the criterion \param strength,radius as it gives them [m]
+	 * \param branch from the centre of particle 1 to that of 2 [m]
+	 */
+	void
+	join(const ddem::BondCriterion& breaks, const ddem::BondStrength& strength, Real radius, const State& state1,
+	     const State& state2, const Vector3r& branch);
 	/// Leaves a frictional contact in place of the bond. \param reach distance of the centres
 	/// below which it acts [m]
 	void part(Real reach);
@@ -41,10 +47,15 @@ public:
 	void setContactStiffness();
 
 	ddem::BondElasticity  elasticity() const { return { young, poisson }; }
-	ddem::MohrCoulomb     strength() const { return { cohesion, tanBondFriction, tensileStrength }; }
 	ddem::ContactFriction friction() const { return { frictionStatic, frictionDynamic, gradualFriction }; }
 	/// The bond as the kernel knows it. \param geom gives the radii of its particles
-	ddem::Bond bond(const ScGeom& geom) const;
+	ddem::BreakableBond bond(const ScGeom& geom) const;
+	/// How the bond breaks. \throws std::invalid_argument where it is none
+	const ddem::BondCriterion& breaks() const;
+	/// Takes up what a step has made the bond remember.
+	void setMemory(const ddem::BondMemory& remembered);
+	boost::python::dict pyStrength() const;
+	boost::python::dict pyMemory() const;
 	/// The contact between particles of these masses [kg].
 	BondedContact contactNow(Real mass1, Real mass2) const;
 	/// Takes up what a step has made of it.
@@ -57,7 +68,7 @@ public:
 	void                     postLoad(BondedPhys&) { bondsMade++; }
 
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR(BondedPhys, RotStiffFrictPhys,
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BondedPhys, RotStiffFrictPhys,
 		"Interaction of two particles of :yref:`BondedMat`: an elastic bond while *bonded*, else a frictional "
 		"contact. :yref:`kn<NormPhys.kn>` and :yref:`ks<NormShearPhys.ks>` [N/m] are those of the bond or of "
 		"the contact, whichever acts; :yref:`kr<RotStiffFrictPhys.kr>` and :yref:`ktw<RotStiffFrictPhys.ktw>` "
@@ -67,9 +78,12 @@ public:
 			"Whether the contact has slipped before, so that dynamic friction applies"))
 		((Real,young,NaN,Attr::readonly,"Young's modulus of cement and contact [Pa]"))
 		((Real,poisson,NaN,Attr::readonly,"Poisson's ratio of cement and contact [-]"))
-		((Real,cohesion,NaN,Attr::readonly,"Cohesion of the bond [Pa]"))
-		((Real,tanBondFriction,NaN,Attr::readonly,"Tangent of the bond's angle of friction [-]"))
-		((Real,tensileStrength,NaN,Attr::readonly,"Tension cut-off of the bond [Pa]"))
+		((std::string,criterion,,Attr::readonly,
+			"Name of the criterion by which the bond breaks; empty for a pair that never was bonded"))
+		((Vector6r,strengthNumbers,Vector6r::Zero(),(Attr::readonly|Attr::hidden),
+			"Numbers that the criterion keeps of its parameters"))
+		((vector<Real>,memoryNumbers,,(Attr::readonly|Attr::hidden),
+			"Numbers that the criterion remembers; empty where it remembers none"))
 		((Real,frictionStatic,NaN,Attr::readonly,"Static coefficient of friction [-]"))
 		((Real,frictionDynamic,NaN,Attr::readonly,"Dynamic coefficient of friction [-]"))
 		((Real,kb,0,Attr::readonly,"Bending stiffness of the bond [N·m/rad]"))
@@ -103,10 +117,18 @@ public:
 			"Largest normal stress of the bond's section, tension positive: :math:`F_n/A + |M_b|R/I` [Pa]"))
 		((Real,shearStress,0,Attr::readonly,
 			"Largest shear stress of the bond's section: :math:`|F_s|/A + |M_t|R/J` [Pa]")),
-		createIndex();
+		createIndex();,
+		.add_property("strength",&BondedPhys::pyStrength,
+			"What the bond can bear, a dictionary whose keys depend on its criterion; empty for a contact")
+		.add_property("memory",&BondedPhys::pyMemory,
+			"What the bond's criterion remembers, a dictionary, as damage; empty where it remembers "
+			"nothing")
 	);
 	// clang-format on
 	REGISTER_CLASS_INDEX(BondedPhys, RotStiffFrictPhys);
+
+private:
+	mutable const ddem::BondCriterion* found = nullptr; ///< that of the name
 };
 REGISTER_SERIALIZABLE(BondedPhys);
 

@@ -4,6 +4,8 @@
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
+#include <map>
+#include <set>
 #include <sstream>
 
 namespace yade {
@@ -46,7 +48,6 @@ namespace {
 			                  dynamic_cast<const BondedMat*>(body->material.get()) };
 		if (!particle.sphere) refuse(pair, name + " is not a sphere");
 		if (!particle.material) refuse(pair, name + " has no BondedMat");
-		particle.material->validate();
 		if (!(particle.sphere->radius > 0) || !std::isfinite(particle.sphere->radius))
 			refuse(pair,
 			       "radius of " + name + " = " + std::to_string(particle.sphere->radius)
@@ -79,6 +80,91 @@ namespace {
 		return geom;
 	}
 
+	/// What breaks bonds of two materials.
+	struct Breaking {
+		const ddem::BondCriterion*  criterion;
+		ddem::BondCriterion::Values values;
+	};
+
+	/// That of every pair of materials, found once.
+	class Strengths {
+	public:
+		explicit Strengths(const Scene& of) : scene(of) { }
+
+		/// \throws std::invalid_argument for materials that are no good, or whose criteria differ
+		const Breaking& of(const BondedMat& a, const BondedMat& b)
+		{
+			const auto [place, fresh] = known.try_emplace({ &a, &b });
+			if (fresh) {
+				try {
+					place->second = make(a, b);
+				} catch (...) {
+					known.erase(place);
+					throw;
+				}
+			}
+			return place->second;
+		}
+
+	private:
+		Breaking make(const BondedMat& a, const BondedMat& b) const
+		{
+			for (const BondedMat* material : { &a, &b })
+				material->validate();
+			if (const BondedMat* between = materialBetween(scene, a, b)) {
+				between->validate();
+				const CriterionOfMaterial own = between->ownCriterion();
+				return { own.criterion, own.values };
+			}
+			const CriterionOfMaterial first = a.ownCriterion(), second = b.ownCriterion();
+			if (first.criterion != second.criterion)
+				throw std::invalid_argument(
+				        "'" + a.label + "' breaks by " + first.criterion->name() + ", '" + b.label
+				        + "' by " + second.criterion->name() + ": append a third material between=['"
+				        + a.label + "', '" + b.label + "'] that says what their bonds bear");
+			return { first.criterion, first.criterion->weaker(first.values, second.values) };
+		}
+		const Scene&                                                       scene;
+		std::map<std::pair<const BondedMat*, const BondedMat*>, Breaking> known;
+	};
+
+	/// A bond that passed all checks.
+	struct Planned {
+		Planned(const Particle& first, const Particle& second, const shared_ptr<BondedPhys>& made,
+		        const Breaking& breaking, const ddem::BondMaking& making, Real factor)
+		        : a(first)
+		        , b(second)
+		        , phys(made)
+		        , criterion(breaking.criterion)
+		        , strength(criterion->strengthOf(
+		                  factor == 1 ? breaking.values : criterion->scaled(breaking.values, factor), making))
+		        , radius(criterion->radius(breaking.values, making))
+		{
+		}
+		Particle                   a, b;
+		shared_ptr<BondedPhys>     phys;
+		const ddem::BondCriterion* criterion;
+		ddem::BondStrength         strength;
+		Real                       radius; ///< of the section [m]
+	};
+
+	std::vector<Real> checkedFactors(const boost::python::object& given, size_t count)
+	{
+		if (given.is_none()) return {};
+		const boost::python::stl_input_iterator<Real> begin(given), end;
+		std::vector<Real>                             factors(begin, end);
+		if (factors.size() != count)
+			throw std::invalid_argument(
+			        "bond: " + std::to_string(factors.size()) + " factors for " + std::to_string(count)
+			        + " pairs; there must be one for each");
+		for (size_t i = 0; i < count; i++)
+			if (!(factors[i] > 0) || !std::isfinite(factors[i]))
+				throw std::invalid_argument(
+				        "bond: factor " + std::to_string(i) + " = " + std::to_string(factors[i])
+				        + " [-] must be positive and finite");
+		return factors;
+	}
+
 } // namespace
 
 void Ip2_BondedMat_BondedMat_BondedPhys::go(
@@ -88,7 +174,7 @@ void Ip2_BondedMat_BondedMat_BondedPhys::go(
 	if (interaction->phys) return;
 	refuseGrid(*scene, *interaction);
 	interaction->phys = BondedPhys::contact(
-	        static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2),
+	        *scene, static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2),
 	        BondedPhys::reachOf(*interaction));
 }
 
@@ -105,35 +191,52 @@ void Ip2_FrictMat_BondedMat_BondedPhys::go(
 	like.young           = other.young;
 	like.frictionStatic  = math::tan(other.frictionAngle);
 	like.frictionDynamic = like.frictionStatic;
-	interaction->phys    = BondedPhys::contact(like, *bonded, BondedPhys::reachOf(*interaction));
+	interaction->phys    = BondedPhys::contact(*scene, like, *bonded, BondedPhys::reachOf(*interaction));
 }
 
-void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs)
+void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs, const boost::python::object& factors)
 {
 	Scene& current = *Omega::instance().getScene();
 	requireSingleProcess(current);
 	if (current.isPeriodic)
 		throw std::invalid_argument(
 		        "bonds across periodic boundaries are not supported: set O.periodic = False");
+	checkMaterialsBetween(current);
+	const std::vector<Real> factor = checkedFactors(factors, pairs.size());
 	std::set<std::pair<int, int>> seen;
-	for (const Vector2i& pair : pairs) { // all checks come first, so that nothing is half-built on error
+	Strengths                     strengths(current);
+	std::vector<Planned>          planned; // all checks come first, so that nothing is half-built on error
+	for (size_t i = 0; i < pairs.size(); i++) {
+		const Vector2i& pair = pairs[i];
 		if (pair[0] == pair[1]) refuse(pair, "a body cannot be bonded to itself");
-		const Particle a = checkedParticle(current, pair, pair[0]), b = checkedParticle(current, pair, pair[1]);
-		if (!((b.body->state->pos - a.body->state->pos).norm() > 0)) refuse(pair, "they have the same centre");
-		const shared_ptr<Interaction> old = current.interactions->find(pair[0], pair[1]);
-		if (!seen.insert(std::minmax(pair[0], pair[1])).second || isBonded(old))
-			refuse(pair, "they are bonded already");
-	}
-	for (const Vector2i& pair : pairs) {
 		const auto [first, second] = std::minmax(pair[0], pair[1]);
 		const Particle a = checkedParticle(current, pair, first), b = checkedParticle(current, pair, second);
+		const Real     length = (b.body->state->pos - a.body->state->pos).norm();
+		if (!(length > 0)) refuse(pair, "they have the same centre");
+		const shared_ptr<Interaction> old = current.interactions->find(first, second);
+		if (!seen.insert({ first, second }).second || isBonded(old)) refuse(pair, "they are bonded already");
+		try {
+			auto phys = BondedPhys::contact(
+			        current, *a.material, *b.material, a.sphere->radius + b.sphere->radius);
+			const ddem::BondMaking making {
+				phys->elasticity(), length, a.sphere->radius, b.sphere->radius
+			};
+			planned.push_back({ a, b, phys, strengths.of(*a.material, *b.material), making,
+			                    factor.empty() ? 1 : factor[i] });
+		} catch (const std::invalid_argument& error) {
+			refuse(pair, error.what());
+		}
+	}
+	for (const Planned& plan : planned) {
+		const auto first = plan.a.body->getId(), second = plan.b.body->getId();
 		if (const auto old = current.interactions->find(first, second))
 			current.interactions->erase(first, second, old->linIx);
 		auto interaction  = boost::make_shared<Interaction>(first, second);
-		auto phys         = BondedPhys::contact(*a.material, *b.material, a.sphere->radius + b.sphere->radius);
-		interaction->geom = makeGeometry(a, b, current, interaction);
-		interaction->phys = phys;
-		phys->join(*a.body->state, *b.body->state, b.body->state->pos - a.body->state->pos);
+		interaction->geom = makeGeometry(plan.a, plan.b, current, interaction);
+		interaction->phys = plan.phys;
+		plan.phys->join(
+		        *plan.criterion, plan.strength, plan.radius, *plan.a.body->state, *plan.b.body->state,
+		        plan.b.body->state->pos - plan.a.body->state->pos);
 		interaction->iterMadeReal = current.iter;
 		current.interactions->insert(interaction);
 	}

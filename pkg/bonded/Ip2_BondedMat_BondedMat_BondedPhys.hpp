@@ -12,7 +12,8 @@ public:
 	void go(const shared_ptr<Material>&, const shared_ptr<Material>&, const shared_ptr<Interaction>&) override;
 
 	/// Joins pairs of spheres of the current scene; all of them, or none on error.
-	void bond(const std::vector<Vector2i>& pairs);
+	/// \param factors of the strength of every pair, a sequence, or None
+	void bond(const std::vector<Vector2i>& pairs, const boost::python::object& factors);
 
 	FUNCTOR2D(BondedMat, BondedMat);
 	// clang-format off
@@ -21,11 +22,13 @@ public:
 		"bonds exist only where :yref:`bond<Ip2_BondedMat_BondedMat_BondedPhys.bond>` makes them, so a broken "
 		"bond never heals.",
 		/*attrs*/, /*ctor*/,
-		.def("bond",&Ip2_BondedMat_BondedMat_BondedPhys::bond,(boost::python::arg("pairs")),
+		.def("bond",&Ip2_BondedMat_BondedMat_BondedPhys::bond,(boost::python::arg("pairs"),
+			boost::python::arg("factors")=boost::python::object()),
 			"Bond pairs of spheres, given as a list of (id1, id2), at their present distance and "
-			"orientation, without load. Needs no engines, and bonds need no help from the collider: "
-			"they exist until they break, whatever the gap. ValueError, and nothing bonded, if a pair is "
-			"not of two different spheres of :yref:`BondedMat` or is bonded already.")
+			"orientation, without load. *factors* are of the strength of every pair [-], or None. "
+			"Needs no engines, and bonds need no help from the collider: they exist until they break, "
+			"whatever the gap. ValueError, and nothing bonded, if a pair is not of two different spheres "
+			"of :yref:`BondedMat` or is bonded already.")
 	);
 	// clang-format on
 };

@@ -20,13 +20,11 @@
 #pragma once
 
 #include <pkg/ddem/DeformableElastMat.hpp>
+#include <pkg/ddem/ParameterAttributes.hpp>
 #include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 
-// A switch is called as its effect, a parameter as its member.
-#define DDEM_ATTRIBUTE(name, standard, unit, bounds, wayOut, doc) \
-	((Real, name, standard, Attr::triggerPostLoad, "[" unit "] " doc))
+// A switch is called as its effect.
 #define DDEM_SWITCH(name, bit, doc) ((bool, name, true, Attr::triggerPostLoad, doc))
-#define DDEM_COPY_PARAMETER(name, standard, unit, bounds, wayOut, doc) p.name = name;
 #define DDEM_ADD_EFFECT(name, bit, doc) mask |= name ? unsigned(bit) : 0;
 
 #define DDEM_LAW_OF_MATERIAL(Class, Law, PARAMETERS, EFFECTS) \

@@ -14,7 +14,7 @@ Crush a prism of bonded spheres::
 		BondedInteractionLoop(
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
 			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
+			[Law2_ScGeom_BondedPhys_Bonded(), Law2_ScGeom_ElasticWallPhys_Repulsion()],
 		),
 		*platens.engines,
 		ViscousBodyDamping(),
@@ -36,12 +36,12 @@ from yade import (
 	BondedNewtonIntegrator, ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
 	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
-	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_MohrCoulomb,
+	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
 	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O,
 	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, Wall, utils
 )
 
-from . import broken_bonds, meter
+from . import broken_bonds, meter, provenance
 from . import packing as packings
 from .arrays import BodyIds, fixed
 
@@ -52,23 +52,27 @@ _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bo
 
 
 @meter.makes_particles
-def append(packing, material, gap=None, color=None, mass_law="solid"):
+def append(packing, material, gap=None, color=None, mass_law="solid", scatter=None):
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 
 	:param packing: :class:`packing.Packing`, or what :func:`packing.of` takes, as YADE's SpherePack. One layer
 		(:attr:`packing.Packing.flat`) stays in its plane:
 		motion along z and rotation about x and y are blocked.
-	:param material: a :yref:`BondedMat` of O.materials, or its label.
+	:param material: a :yref:`BondedMat` of O.materials, or its label; or a list of them, one for each sphere. Where
+		two meet, the weaker counts, or a third that is :yref:`between<BondedMat.between>` them.
 	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds,
 		or 0.0025 of the largest radius where it has none.
 	:param color: of the spheres, three numbers from 0 to 1.
 	:param mass_law: "solid": density times volume, 4/3 pi r³; "cube":
 		density times r³, the default of ESyS-Particle (with 1 g/mm³ = 1e6 kg/m³).
+	:param scatter: factors of the strength of every bond [-]: None, :class:`Weibull`, or another function of the
+		number of bonds that returns them, in ascending order of pairs.
 	:returns: :class:`BondedSample`; a warning says where it is not in one piece
 	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative
 		gap, nothing to bond. Nothing is appended then.
 	"""
-	material, packing = _material(material), packings.of(packing)
+	packing = packings.of(packing)
+	materials = _materials(material, len(packing))
 	if mass_law not in ("solid", "cube"):
 		raise ValueError(
 			f"mass_law = '{mass_law}' is unknown; use 'solid' (density times 4/3 pi r³) or 'cube' "
@@ -92,8 +96,9 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 			"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the "
 			f"smallest radius is {packing.radii.min()} m)"
 		)
+	factors = None if scatter is None else np.asarray(scatter(len(pairs)), float)
 	spheres = []
-	for centre, radius in zip(packing.centres, packing.radii):
+	for centre, radius, material in zip(packing.centres, packing.radii, materials):
 		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
 		if mass_law == "cube":
 			body.state.mass = material.density * float(radius)**3
@@ -103,9 +108,34 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 		spheres.append(body)
 	# one by one: bodies that YADE takes as a list are never freed, with their bonds 1.5 kB a bond
 	ids = BodyIds([O.bodies.append(body) for body in spheres])
-	Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]])
+	try:
+		Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]], factors)
+	except ValueError:
+		for i in ids:
+			O.bodies.erase(i)
+		raise
 	_warn_of_pieces(packing, pairs)
 	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
+
+
+class Weibull:
+	"""Random factors of strength with mean 1, after Weibull (1951): what :func:`append` takes as *scatter*.
+
+	:param modulus: m; the coefficient of variation is about 1.2/m: rock has 2 to 10, concrete 5 to 20.
+	:param seed: same seed, same factors
+	:raises ValueError: a modulus that is not positive
+	"""
+
+	def __init__(self, modulus, seed=1):
+		if not (modulus > 0 and math.isfinite(modulus)):
+			raise ValueError(f"Weibull: modulus = {modulus} [-] must be positive and finite")
+		self.modulus, self.seed = modulus, seed
+		provenance.note_seed(seed)
+
+	def __call__(self, count):
+		"""Factors (count,) [-]."""
+		drawn = np.random.default_rng(self.seed).weibull(self.modulus, count)
+		return drawn / math.gamma(1 + 1 / self.modulus)
 
 
 def _warn_of_pieces(packing, pairs):
@@ -245,7 +275,7 @@ class BondedSample:
 		shear_stress when it broke [Pa], energy it lost [J]. YADE takes ``int(record["id1"])`` as an id.
 		"""
 		columns = law().brokenArrays()
-		columns["mode"] = np.where(columns.pop("tension"), "tension", "shear")
+		columns["mode"] = np.array(["", "tension", "shear"])[columns["mode"]]
 		records = np.empty(len(columns["id1"]), dtype=broken_bonds.DTYPE)
 		for name, values in columns.items():
 			records[name] = values
@@ -414,7 +444,7 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
 	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle
-		2.3.5, to compare with it, see :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb`.
+		2.3.5, to compare with it, see :yref:`Law2_ScGeom_BondedPhys_Bonded`.
 	"""
 	for engine in platens.engines if platens else ():
 		engine.ahead = convention == "esys"
@@ -439,7 +469,7 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 				Ip2_FrictMat_BondedMat_BondedPhys(), Ip2_FrictMat_FrictMat_FrictPhys()
 			],
 			[
-				Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention),
+				Law2_ScGeom_BondedPhys_Bonded(convention=convention),
 				Law2_ScGeom_ElasticWallPhys_Repulsion(), Law2_ScGeom_FrictPhys_CundallStrack(),
 			],
 			label="interactions",
@@ -452,8 +482,8 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 
 def critical_time_step():
 	"""Rigorous bound on the time step [s] of the bonded spheres of the scene (in the consistent convention), see
-	:yref:`Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep`; O.engines need not be set."""
-	return Law2_ScGeom_BondedPhys_MohrCoulomb.criticalTimeStep()
+	:yref:`Law2_ScGeom_BondedPhys_Bonded.criticalTimeStep`; O.engines need not be set."""
+	return Law2_ScGeom_BondedPhys_Bonded.criticalTimeStep()
 
 
 def time_step(safety=0.8):
@@ -503,6 +533,11 @@ def check():
 	for material in O.materials:
 		if isinstance(material, (BondedMat, ElasticWallMat)):
 			material.validate()
+		if esys and isinstance(material, BondedMat) and material.criterion != "MohrCoulomb":
+			raise ValueError(
+				f"{type(material).__name__} '{material.label}': the convention 'esys' knows bonds of "
+				"BondedMat only; use 'consistent'"
+			)
 		if (
 			esys
 			and isinstance(material, BondedMat)
@@ -521,19 +556,30 @@ def check():
 
 
 def law():
-	"""The :yref:`Law2_ScGeom_BondedPhys_MohrCoulomb` of the scene, which keeps the list of broken bonds.
+	"""The :yref:`Law2_ScGeom_BondedPhys_Bonded` of the scene, which keeps the list of broken bonds.
 
 	:raises RuntimeError: O.engines has no InteractionLoop with one.
 	"""
 	for engine in O.engines:
 		if isinstance(engine, InteractionLoop):
 			for functor in engine.lawDispatcher.functors:
-				if isinstance(functor, Law2_ScGeom_BondedPhys_MohrCoulomb):
+				if isinstance(functor, Law2_ScGeom_BondedPhys_Bonded):
 					return functor
 	raise RuntimeError(
-		"O.engines has no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb, so bonds bear no load and "
+		"O.engines has no InteractionLoop with Law2_ScGeom_BondedPhys_Bonded, so bonds bear no load and "
 		"cannot break; see ddem.bonded.engines()"
 	)
+
+
+def _materials(material, count):
+	"""The material of each of some spheres, checked."""
+	if isinstance(material, (str, BondedMat)):
+		return [_material(material)] * count
+	materials = list(material)
+	if len(materials) != count:
+		raise ValueError(f"{len(materials)} materials for {count} spheres; give one, or one for each")
+	known = {m: _material(m) for m in set(materials)}
+	return [known[m] for m in materials]
 
 
 def _material(material):

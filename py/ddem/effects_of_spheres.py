@@ -3,8 +3,8 @@
 import math
 
 from yade import (
-	BondedMat, BondedPhys, ElasticWallMat, InsertionSortCollider, InteractionLoop,
-	Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Sphere, Vector3, ViscousBodyDamping
+	BondedMat, BondedPhys, ElasticWallMat, InsertionSortCollider, InteractionLoop, Law2_ScGeom_BondedPhys_Bonded,
+	NewtonIntegrator, O, SofteningBondMat, Sphere, Vector3, ViscousBodyDamping
 )
 
 from .effect_entries import Group, cost_of, share_of, values_of
@@ -18,7 +18,7 @@ def groups_of_spheres():
 	materials = list({b.mat.id: b.mat for b in spheres}.values())
 	loop = next((e for e in O.engines if isinstance(e, InteractionLoop)), None)
 	functors = loop.lawDispatcher.functors if loop else []
-	law = next((f for f in functors if isinstance(f, Law2_ScGeom_BondedPhys_MohrCoulomb)), None)
+	law = next((f for f in functors if isinstance(f, Law2_ScGeom_BondedPhys_Bonded)), None)
 	pairs = [i for i in O.interactions.all() if isinstance(i.phys, BondedPhys)]
 	held = sum(i.phys.bonded for i in pairs)
 	contacts = sum(not i.phys.bonded and i.isReal for i in pairs)
@@ -31,7 +31,7 @@ def groups_of_spheres():
 		each = {e.label or type(e).__name__: cost_of([e], len(spheres), "sphere")[0] for e in movers}
 		parts = ", ".join(f"{label} {time:.3g} ns" for label, time in each.items() if time)
 		cost += f"; per sphere and step: {parts}" if parts else ""
-	group = Group(name, "bond", bonds, Law2_ScGeom_BondedPhys_MohrCoulomb.bytesPerBond(), cost, ns)
+	group = Group(name, "bond", bonds, Law2_ScGeom_BondedPhys_Bonded.bytesPerBond(), cost, ns)
 	_bond(group, materials, law, held, broken)
 	_contacts(group, materials, law, contacts, broken)
 	damping = [e for e in movers if isinstance(e, ViscousBodyDamping) and not e.dead]
@@ -73,12 +73,14 @@ def _bond(group, materials, law, held, broken):
 			says += f"{bound:.2g} of the largest of all parts"
 		group.add(part, True, f"part of every bond, {text}", 0, says, bound)
 	cut = [m for m in materials if m.tensileStrength < _apex(m)]
+	softening = [m for m in materials if isinstance(m, SofteningBondMat)]
 	modes = [b.mode for b in broken]
 	said = "no bond broken"
 	if broken:
 		said = f"{modes.count('tension')} bonds broken in tension, {modes.count('shear')} in shear"
 	angle = values_of(materials, "bondFrictionAngle", "rad")
-	why = f"Mohr-Coulomb, {values_of(materials, 'cohesion', 'Pa')}, {angle}"
+	names = ", ".join(sorted({m.criterion for m in materials}))
+	why = f"{names}, {values_of(materials, 'cohesion', 'Pa')}, {angle}"
 	# a single bond may decide: no share is small
 	group.add("failure criterion", True, why, 0, *((said, 1.0 if broken else 0.0) if moved else ()))
 	if cut:
@@ -91,10 +93,15 @@ def _bond(group, materials, law, held, broken):
 		said = values_of(materials, "tensileStrength", "Pa")
 		said += f", not below C/tan φ = {apex:.3g} Pa, has no effect"
 		group.add("tension cut-off", False, said)
+	if softening:
+		why = values_of(softening, "tensionEnergy", "J/m²") + ", " + values_of(softening, "shearEnergy", "J/m²")
+		group.add("softening of bonds", True, why, 0, *(share_of("bondSoftening") if moved else ()))
+	else:
+		group.add("softening of bonds", False, "no SofteningBondMat: bonds break at once")
 	convention = law.convention if law else "consistent"
 	group.add(
 		"convention of ESyS-Particle", convention == "esys",
-		f"convention = '{convention}' of Law2_ScGeom_BondedPhys_MohrCoulomb"
+		f"convention = '{convention}' of Law2_ScGeom_BondedPhys_Bonded"
 	)
 
 

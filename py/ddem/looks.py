@@ -32,7 +32,7 @@ _METHODS = {
 	"DeformableTriangle": "stress strain plasticStrain damageTensor damage rotation area",
 	"BondedInteractionLoop": "sphereArray existing",
 	"BondedNewtonIntegrator": "moved",
-	"Law2_ScGeom_BondedPhys_MohrCoulomb":
+	"Law2_ScGeom_BondedPhys_Bonded":
 		"brokenBonds brokenCount brokenAmong brokenArrays bonds bondArrays bytesPerBond",
 }
 _TRIGGERS_POST_LOAD = 4  # Attr::triggerPostLoad: code that may look at anything runs when such an attribute is set

@@ -466,8 +466,8 @@ class TestBadInput:
 		({"poisson": 0.5}, r"poisson = 0.5 \[-\] must lie between -1 and 0.5"),
 		({"young": 0}, "young = 0 Pa must be positive"), ({"young": float("nan")}, "young = nan Pa"),
 		({"density": -1}, "density = -1 kg/m³ must be positive"), ({"cohesion": 0}, "cohesion = 0 Pa"),
-		({"bondFrictionAngle": 45}, "given in degrees"),
-		({"bondFrictionAngle": -0.1}, "must not be negative"),
+		({"bondFrictionAngle": 45}, "Given in degrees"),
+		({"bondFrictionAngle": -0.1}, "rad is not allowed; it must be at least 0"),
 		({"frictionDynamic": 0.7}, "frictionStatic = 0.6"), ({"tensileStrength": 0}, "tensileStrength = 0 Pa"),
 	])
 	def test_material(self, change, words):
@@ -544,7 +544,7 @@ class TestBadInput:
 			InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], []),
 			complete[-1],
 		]
-		with pytest.raises(RuntimeError, match="no InteractionLoop with Law2_ScGeom_BondedPhys_MohrCoulomb"):
+		with pytest.raises(RuntimeError, match="no InteractionLoop with Law2_ScGeom_BondedPhys_Bonded"):
 			bonded.check()
 		O.engines = [complete[0], complete[1], complete[2], bonded.engines()[2], complete[3]]
 		with pytest.raises(RuntimeError, match="more than one InteractionLoop"):

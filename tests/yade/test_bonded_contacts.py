@@ -12,7 +12,7 @@ from yade import (
 	Ig2_GridNode_GridNode_GridNodeGeom6D, Ig2_Sphere_GridConnection_ScGridCoGeom, Ig2_Sphere_Sphere_ScGeom,
 	InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
 	Ip2_CohFrictMat_CohFrictMat_CohFrictPhys, Ip2_FrictMat_BondedMat_BondedPhys,
-	Law2_ScGeom6D_CohFrictPhys_CohesionMoment, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O, Quaternion,
+	Law2_ScGeom6D_CohFrictPhys_CohesionMoment, Law2_ScGeom_BondedPhys_Bonded, NewtonIntegrator, O, Quaternion,
 	TriaxialStressController, Vector3, ddem, gridpfacet, utils
 )
 
@@ -374,7 +374,7 @@ def test_grid_connections_are_refused():
 				Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_FrictMat_BondedMat_BondedPhys(),
 				Ip2_CohFrictMat_CohFrictMat_CohFrictPhys()
 			],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb(), Law2_ScGeom6D_CohFrictPhys_CohesionMoment()]
+			[Law2_ScGeom_BondedPhys_Bonded(), Law2_ScGeom6D_CohFrictPhys_CohesionMoment()]
 		),
 		NewtonIntegrator(),
 	]
@@ -452,7 +452,7 @@ def test_triaxial_stress_on_box_walls():
 		InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Box_Aabb()]),
 		BondedInteractionLoop(
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom()], [Ip2_BondedMat_BondedMat_BondedPhys()],
-			[Law2_ScGeom_BondedPhys_MohrCoulomb()]
+			[Law2_ScGeom_BondedPhys_Bonded()]
 		),
 		GlobalStiffnessTimeStepper(timestepSafetyCoefficient=0.3, timeStepUpdateInterval=10),
 		controller,

@@ -7,7 +7,7 @@ import pytest
 from yade import (
 	BondedInteractionLoop, BondedMat, ForceResetter, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom,
 	InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
-	Law2_ScGeom_BondedPhys_MohrCoulomb, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, SumIntrForcesCb,
+	Law2_ScGeom_BondedPhys_Bonded, Law2_ScGeom_ElasticWallPhys_Repulsion, NewtonIntegrator, O, SumIntrForcesCb,
 	Vector3, utils
 )
 from yade.ddem import bonded, packing
@@ -36,7 +36,7 @@ def specimen(convention="consistent", together=True, **material):
 			[Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
 			[Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys()],
 			[
-				Law2_ScGeom_BondedPhys_MohrCoulomb(convention=convention),
+				Law2_ScGeom_BondedPhys_Bonded(convention=convention),
 				Law2_ScGeom_ElasticWallPhys_Repulsion(),
 			]
 		)
@@ -343,7 +343,7 @@ def test_needs_functors_for_what_it_meets():
 	O.bodies.append(
 		[utils.sphere((0, 0, 0), 1e-3, material="rock"), utils.sphere((1.9e-3, 0, 0), 1e-3, material="rock")]
 	)
-	loop = BondedInteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], [Law2_ScGeom_BondedPhys_MohrCoulomb()])
+	loop = BondedInteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [], [Law2_ScGeom_BondedPhys_Bonded()])
 	O.engines = [ForceResetter(), bonded.engines()[1], loop, NewtonIntegrator()]
 	O.dt = 1e-9
 	with pytest.raises(RuntimeError, match="no Ip2 functor for BondedMat and BondedMat"):
@@ -352,7 +352,7 @@ def test_needs_functors_for_what_it_meets():
 
 def test_unknown_convention():
 	with pytest.raises(ValueError, match="convention = 'mine' is unknown; use 'consistent' or 'esys'"):
-		Law2_ScGeom_BondedPhys_MohrCoulomb(convention="mine")
+		Law2_ScGeom_BondedPhys_Bonded(convention="mine")
 
 
 def test_esys_has_no_gradual_friction():

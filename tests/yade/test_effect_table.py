@@ -492,7 +492,8 @@ def test_lines_of_bonded_spheres():
 	group = ddem.effects()["bonded spheres"]
 	assert states(group) == {
 		"tension and compression": "on", "shear": "on", "bending": "on", "torsion": "on",
-		"failure criterion": "on", "tension cut-off": "off", "convention of ESyS-Particle": "off",
+		"failure criterion": "on", "tension cut-off": "off", "softening of bonds": "off",
+		"convention of ESyS-Particle": "off",
 		"contact": "on", "friction": "off", "gradual friction": "off", "normal contact damping": "on",
 		"tangential contact damping": "off", "body damping": "on", "local damping": "off", "gravity": "off",
 		"energy book": "off"

@@ -7,7 +7,7 @@ import subprocess
 import pytest
 
 from yade import (
-	BondedMat, Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, NewtonIntegrator, O,
+	BondedMat, Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_Bonded, NewtonIntegrator, O,
 	Subdomain, ddem, utils
 )
 from yade.ddem import bonded
@@ -31,7 +31,7 @@ Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i in ids for j in ids if i
 }
 SAMPLES["bonds one by one"] = SAMPLES["bonds"]
 SPHERES = "[Ig2_Sphere_Sphere_ScGeom()]"
-BONDED = f"({SPHERES}, [Ip2_BondedMat_BondedMat_BondedPhys()], [Law2_ScGeom_BondedPhys_MohrCoulomb()])"
+BONDED = f"({SPHERES}, [Ip2_BondedMat_BondedMat_BondedPhys()], [Law2_ScGeom_BondedPhys_Bonded()])"
 FRICTIONAL = f"({SPHERES}, [Ip2_FrictMat_FrictMat_FrictPhys()], [Law2_ScGeom_FrictPhys_CundallStrack()])"
 COLLIDER = "ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], label='collider'),"
 ENGINES = {
@@ -167,7 +167,7 @@ def test_bonds_are_not_even_made(monkeypatch):
 		Ip2_BondedMat_BondedMat_BondedPhys().bond([tuple(ids)])
 	assert O.interactions.countReal() == 0
 	with pytest.raises(RuntimeError, match=REFUSAL):
-		Law2_ScGeom_BondedPhys_MohrCoulomb(convention="esys")
+		Law2_ScGeom_BondedPhys_Bonded(convention="esys")
 
 
 @pytest.mark.parametrize("divide", ["number", "subdomain"])

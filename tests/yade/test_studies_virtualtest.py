@@ -153,7 +153,7 @@ def test_a_yade_of_its_own_gives_the_same():
 def test_bad_parameter_comes_back_in_words():
 	with Bench(SeparateYade(PRISM), [COMPRESSION]) as bench:
 		(point, ) = bench.measure([{"cohesion": -1.0}])
-	assert "ValueError: BondedMat: cohesion = -1 Pa must be positive" in point.error
+	assert "ValueError: BondedMat: cohesion = -1 Pa is not allowed; it must be above 0" in point.error
 
 
 @pytest.mark.parametrize("program, message", [

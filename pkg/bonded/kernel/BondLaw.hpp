@@ -29,6 +29,7 @@ template <class Number> struct BondOf {
 	BondStiffnessOf<Number> stiffness;
 	Number                  length;           ///< d0 [m]
 	Number                  radius1, radius2; ///< of the particles [m]
+	Number                  sectionRadius;    ///< R [m]
 	SpaceRotation<Number>        frame1;           ///< the bond's frame in the axes of particle 1, first
 	                                               ///< axis from particle 1 to 2
 	SpaceRotation<Number>        frame2;           ///< the same frame in the axes of particle 2
@@ -61,7 +62,8 @@ inline SpaceRotation<double> rotationFromX(const SpaceVector<double>& direction)
 	return { half, 0, -direction.z / (2 * half), direction.y / (2 * half) };
 }
 
-/// A bond without load between particles at rest in these orientations. \param branch x2 - x1 [m], not zero
+/// A bond without load between particles at rest in these orientations, with ESyS-Particle's section of radius d0/2.
+/// \param branch x2 - x1 [m], not zero
 inline Bond makeBond(
         const BondStiffness&       stiffness,
         double                     radius1,
@@ -72,7 +74,13 @@ inline Bond makeBond(
 {
 	const double           length = norm(branch);
 	const SpaceRotation<double> frame  = rotationFromX((1 / length) * branch);
-	return { stiffness, length, radius1, radius2, inverse(orientation1) * frame, inverse(orientation2) * frame };
+	return { stiffness,
+		 length,
+		 radius1,
+		 radius2,
+		 0.5 * length,
+		 inverse(orientation1) * frame,
+		 inverse(orientation2) * frame };
 }
 
 /// Factors that turn the vector part v of a unit quaternion into its rotation vector: θ = 2 f v with f = asin|v|/|v|,
@@ -98,14 +106,20 @@ template <class Number> inline HalfAngle<Number> halfAngle(const Number& scalar,
 	return { select(large, factor, small.factor), select(large, (1. - factor) / squared, small.complement) };
 }
 
+/// Leaves the loads of an elastic bond as they are.
+struct AllElastic {
+	template <class Number> void operator()(BondResultantsOf<Number>&) const { }
+};
+
 /** Loads of a bond.
  * \param branch x2 - x1 [m]
  * \param orientation1,orientation2 unit quaternions, body to world
+ * \param weaken called with the elastic loads of the section, of which it may take away
  */
-template <class Number>
+template <class Number, class Weaken = AllElastic>
 inline BondLoadsOf<Number> bondLoads(
         const BondOf<Number>& bond, const SpaceVector<Number>& branch, const SpaceRotation<Number>& orientation1,
-        const SpaceRotation<Number>& orientation2)
+        const SpaceRotation<Number>& orientation2, const Weaken& weaken = {})
 {
 	const SpaceRotation<Number> end1 = orientation1 * bond.frame1, other = orientation2 * bond.frame2;
 	// the shorter of the two rotations between the ends
@@ -125,6 +139,7 @@ inline BondLoadsOf<Number> bondLoads(
 	BondLoadsOf<Number>            loads;
 	loads.section.force  = { k.normal * stretch.x, k.shear * stretch.y, k.shear * stretch.z };
 	loads.section.moment = { k.torsion * rotation.x, k.bending * rotation.y, k.bending * rotation.z };
+	weaken(loads.section);
 	loads.energy         = 0.5 * (dot(loads.section.force, stretch) + dot(loads.section.moment, rotation));
 
 	// δU = force·δΓ + moment·δθ. With spins w1, w2 of the ends, in the middle frame: δθ = v v·w (1 - f)/|v|² + f w

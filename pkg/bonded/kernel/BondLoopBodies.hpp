@@ -1,19 +1,25 @@
 // GPL v2 or later, see LICENSE.
-// Body of the bond loop, compiled once per instruction set.
+// Body of the bond loop, compiled once per criterion and instruction set.
 #pragma once
 
+#include <criteria/AllBondCriteria.hpp>
+#include <pkg/bonded/kernel/BondCriterionOf.hpp>
 #include <pkg/bonded/kernel/BondLoops.hpp>
 #include <pkg/bonded/kernel/SphereMotion.hpp>
 #include <pkg/ddem/kernel/algebra/Lanes.hpp>
+
+#include <type_traits>
 
 namespace yade::ddem {
 
 /// \tparam Unit names the instruction set, so that the linker keeps a copy for each
 /// Flattened: between functions lanes would go through memory, which takes an eighth of the time.
-template <class Unit, class Number, BondConvention convention>
+template <class Unit, class Number, BondConvention convention, class Criterion>
 [[gnu::flatten]] bool bondLoop(const BondArrays& a, std::size_t begin, std::size_t end)
 {
 	using L             = Lanes<Number>;
+	using Strength      = typename Criterion::template Strength<Number>;
+	using Memory        = typename Criterion::template Memory<Number>;
 	constexpr auto row  = std::ptrdiff_t(sizeof(BondSystem::Row) / sizeof(double));
 	bool           over = false;
 	for (std::size_t j = begin; j < end; j += L::width) {
@@ -37,29 +43,71 @@ template <class Unit, class Number, BondConvention convention>
 			                    constant(BondSystem::Length),
 			                    constant(BondSystem::Radius1),
 			                    constant(BondSystem::Radius2),
+			                    constant(BondSystem::SectionRadius),
 			                    frame(BondSystem::Frame1),
 			                    frame(BondSystem::Frame2) };
-		BondLoadsOf<Number>  loads;
-		if constexpr (convention == BondConvention::Esys) loads = esysBondLoads(bond, branch, q1, q2);
-		else loads = bondLoads(bond, branch, q1, q2);
-		const BondStressOf<Number> stress = bondStress(BondSectionOf<Number>(0.5 * bond.length), loads.section);
-		const Number overload = bondOverload(
-		        constant(BondSystem::Cohesion), constant(BondSystem::Friction),
-		        constant(BondSystem::TensionLimit), stress);
-		over |= any(!(overload <= Number(0.))); // in this form it notices what is not a number, too
+		Number numbers[mostStrengths];
+		for (std::size_t k = 0; k < Strength::names.size(); k++)
+			numbers[k] = L::load(a.strength[k] + j);
+		const auto strength = fromNumbers<Strength>(numbers);
+		for (std::size_t k = 0; k < Memory::names.size(); k++)
+			numbers[k] = L::load(a.memory[k] + j);
+		auto memory = fromNumbers<Memory>(numbers);
+
+		BondAnswerOf<Number> answer;
+		const auto           advance = [&](BondResultantsOf<Number>& load) {
+                        answer = Criterion::advance(
+                                strength, memory, BondSectionOf<Number>(bond.sectionRadius), bond.stiffness, load);
+		};
+		BondLoadsOf<Number> loads;
+		if constexpr (convention == BondConvention::Esys) {
+			loads = esysBondLoads(bond, branch, q1, q2);
+			advance(loads.section);
+		} else loads = bondLoads(bond, branch, q1, q2, advance);
+		const auto beyond = !(answer.overload <= Number(0.)); // so it notices what is not a number, too
+		if (any(beyond)) {
+			over = true;
+			L::store(a.overload + j, answer.overload);
+		}
+		if constexpr (Memory::names.size() > 0) {
+			toNumbers(memory, numbers);
+			for (std::size_t k = 0; k < Memory::names.size(); k++)
+				L::store(a.memory[k] + j, numbers[k]);
+			L::store(a.lost + j, answer.lost);
+		}
 
 		double* const to = a.rows + std::ptrdiff_t(j) * row;
-		L::storeRows(to, row, { loads.force.x, loads.force.y, loads.force.z, stress.normal });
-		L::storeRows(to + 4, row, { loads.moment1.x, loads.moment1.y, loads.moment1.z, stress.shear });
+		L::storeRows(to, row, { loads.force.x, loads.force.y, loads.force.z, answer.stress.normal });
+		L::storeRows(to + 4, row, { loads.moment1.x, loads.moment1.y, loads.moment1.z, answer.stress.shear });
 		L::storeRows(to + 8, row, { loads.moment2.x, loads.moment2.y, loads.moment2.z, loads.energy });
 	}
 	return over;
 }
 
-template <class Unit, class Number> BondLoop bondLoopFor(BondConvention convention)
-{
-	return convention == BondConvention::Esys ? bondLoop<Unit, Number, BondConvention::Esys>
-	                                          : bondLoop<Unit, Number, BondConvention::Consistent>;
-}
+/// The loop of a criterion among some. In the convention Esys a bond breaks by Mohr-Coulomb.
+template <class Unit, class Number> struct BondLoopOf {
+	BondConvention       convention;
+	const BondCriterion& criterion;
+
+	template <class... Criteria> struct Among {
+		static BondLoop find(const BondLoopOf& wanted)
+		{
+			BondLoop found = nullptr;
+			(void)((&bondCriterion<Criteria>() == &wanted.criterion && (found = of<Criteria>(wanted), true))
+			       || ...);
+			return found;
+		}
+		template <class Criterion> static BondLoop of(const BondLoopOf& wanted)
+		{
+			if (wanted.convention == BondConvention::Consistent)
+				return bondLoop<Unit, Number, BondConvention::Consistent, Criterion>;
+			if constexpr (std::is_same_v<Criterion, MohrCoulomb>)
+				return bondLoop<Unit, Number, BondConvention::Esys, Criterion>;
+			else
+				return nullptr;
+		}
+	};
+	BondLoop find() const { return AllBondCriteria<Among>::find(*this); }
+};
 
 } // namespace yade::ddem

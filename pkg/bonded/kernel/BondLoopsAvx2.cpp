@@ -9,13 +9,14 @@ namespace {
 	struct Avx2;
 	using Batch = xsimd::batch<double, xsimd::fma3<xsimd::avx2>>;
 }
-BondLoop selectBondLoopAvx2(BondConvention convention)
+BondLoop selectBondLoopAvx2(BondConvention convention, const BondCriterion& criterion)
 {
-	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? bondLoopFor<Avx2, Batch>(convention)
-	                                                                       : nullptr;
+	return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+	        ? BondLoopOf<Avx2, Batch> { convention, criterion }.find()
+	        : nullptr;
 }
 #else
-BondLoop selectBondLoopAvx2(BondConvention) { return nullptr; }
+BondLoop selectBondLoopAvx2(BondConvention, const BondCriterion&) { return nullptr; }
 #endif
 
 } // namespace yade::ddem

@@ -2,7 +2,9 @@
 // Bonds with Eigen's vectors, whose operations tests need.
 #pragma once
 
+#include <pkg/bonded/kernel/BondCriterionOf.hpp>
 #include <pkg/bonded/kernel/BondSystem.hpp>
+#include <pkg/bonded/kernel/criteria/MohrCoulomb.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 namespace bond_samples {
@@ -38,6 +40,16 @@ loadsOf(const Bond& bond, const Vector& branch, const Quaternion& q1, const Quat
 		 eigenVector(l.axis),
 		 l.section,
 		 l.energy };
+}
+
+/// A bond that breaks by Mohr-Coulomb with tan φ = 1. \param cohesion [Pa]
+inline BreakableBond breakable(const Bond& bond, double cohesion)
+{
+	MohrCoulomb::Parameters parameters;
+	parameters.cohesion             = cohesion;
+	const BondCriterion& criterion = bondCriterion<MohrCoulomb>();
+	return { bond, &criterion,
+		 criterion.strengthOf(BondCriterionOf<MohrCoulomb>::valuesOf(parameters), {}), {} };
 }
 
 } // namespace bond_samples

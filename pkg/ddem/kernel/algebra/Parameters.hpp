@@ -32,6 +32,11 @@ struct Bounds {
 
 constexpr double unbounded = std::numeric_limits<double>::max();
 constexpr Bounds above(double least) { return { least, unbounded, false, true }; }
+constexpr Bounds aboveOrInfinite(double least)
+{
+	return { least, std::numeric_limits<double>::infinity(), false, true };
+}
+constexpr Bounds aboveAtMost(double least, double most) { return { least, most, false, true }; }
 constexpr Bounds atLeast(double least) { return { least, unbounded, true, true }; }
 constexpr Bounds between(double least, double most) { return { least, most, true, true }; }           ///< ends included
 constexpr Bounds strictlyBetween(double least, double most) { return { least, most, false, false }; } ///< ends excluded

@@ -3,7 +3,7 @@
 #include <pkg/bonded/BondedArrays.hpp>
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/bonded/BondedTimeStep.hpp>
-#include <pkg/bonded/Law2_ScGeom_BondedPhys_MohrCoulomb.hpp>
+#include <pkg/bonded/Law2_ScGeom_BondedPhys_Bonded.hpp>
 #include <pkg/ddem/kernel/algebra/EigenSpace.hpp>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace yade {
 
-DDEM_PLUGIN((Law2_ScGeom_BondedPhys_MohrCoulomb))
+DDEM_PLUGIN((Law2_ScGeom_BondedPhys_Bonded))
 
 namespace {
 
@@ -25,68 +25,95 @@ namespace {
 
 } // namespace
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&)
+void Law2_ScGeom_BondedPhys_Bonded::postLoad(Law2_ScGeom_BondedPhys_Bonded&)
 {
 	if (convention != "consistent" && convention != "esys")
 		throw std::invalid_argument(
-		        "Law2_ScGeom_BondedPhys_MohrCoulomb: convention = '" + convention
+		        "Law2_ScGeom_BondedPhys_Bonded: convention = '" + convention
 		        + "' is unknown; use 'consistent' or 'esys'");
 	esys = convention == "esys";
 	requireSingleProcess(); // in words here: what is thrown in the loop of InteractionLoop ends the program
 }
 
-Vector3r Law2_ScGeom_BondedPhys_MohrCoulomb::branchOf(const Interaction& I) const
+Vector3r Law2_ScGeom_BondedPhys_Bonded::branchOf(const Interaction& I) const
 {
 	const Vector3r branch = Body::byId(I.getId2(), scene)->state->pos - Body::byId(I.getId1(), scene)->state->pos;
 	return scene->isPeriodic ? Vector3r(branch + scene->cell->intrShiftPos(I.cellDist)) : branch;
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
+bool Law2_ScGeom_BondedPhys_Bonded::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
 	process.require(*scene); // an InteractionLoop offers no other place to look
 	auto& phys = static_cast<BondedPhys&>(*iPhys);
 	if (!phys.bonded) return advanceContact(*I);
-	if (esys) { // ESyS-Particle tests the loads of the last step
-		const ddem::BondStress last { phys.normalStress, phys.shearStress };
-		if (ddem::bondFailure(phys.strength(), last) != ddem::BondFailure::None) return replaceBond(*I, last);
-	}
+	if (esys && failsInEsys(phys)) return replaceBond(*I, { phys.normalStress, phys.shearStress });
 	const State &state1 = *Body::byId(I->getId1(), scene)->state, &state2 = *Body::byId(I->getId2(), scene)->state;
-	const Vector3r         branch = branchOf(*I), normal = branch.normalized();
-	const ddem::BondLoads loads = ddem::bondLoads(
-	        bondConvention(), phys.bond(static_cast<const ScGeom&>(*iGeom)), ddem::spaceVector(branch),
-	        ddem::rotation(state1.ori), ddem::rotation(state2.ori));
-	const ddem::BondStress stress = ddem::bondStress(ddem::BondSection(phys.bondRadius), loads.section);
-	if (!esys && ddem::bondFailure(phys.strength(), stress) != ddem::BondFailure::None)
-		return replaceBond(*I, stress);
+	const Vector3r            branch = branchOf(*I), normal = branch.normalized();
+	ddem::BreakableBond       bond   = phys.bond(static_cast<const ScGeom&>(*iGeom));
+	ddem::BondAnswer          answer {};
+	const ddem::BondLoads     loads = loadsOf(bond, branch, state1, state2, answer);
+	phys.setMemory(bond.memory);
+	if (scene->trackEnergy && answer.lost != 0)
+		energy.add(*scene->energy, BondedEnergy::BondSoftening, answer.lost);
+	if (!esys && answer.overload > 0) return replaceBond(*I, answer.stress);
 
 	const Vector3r force = ddem::eigenVector(loads.force);
 	phys.normalForce     = -force.dot(normal) * normal;
 	phys.shearForce      = -force - phys.normalForce;
-	phys.normalStress    = stress.normal;
-	phys.shearStress     = stress.shear;
+	phys.normalStress    = answer.stress.normal;
+	phys.shearStress     = answer.stress.shear;
 	applyLoads(*I, force, ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2));
-	if (scene->trackEnergy) bookBondEnergy(loads.energy);
+	if (scene->trackEnergy) bookBondEnergy(loads.energy, 0);
 	return true;
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::replaceBond(Interaction& I, const ddem::BondStress& stress)
+ddem::BondLoads Law2_ScGeom_BondedPhys_Bonded::loadsOf(
+        ddem::BreakableBond& bond, const Vector3r& branch, const State& state1, const State& state2,
+        ddem::BondAnswer& answer) const
+{
+	const ddem::BondSection section(bond.bond.sectionRadius);
+	return ddem::bondLoads(
+	        bondConvention(), bond.bond, ddem::spaceVector(branch), ddem::rotation(state1.ori),
+	        ddem::rotation(state2.ori), [&](ddem::BondResultants& load) {
+		        answer = bond.criterion->advance(
+		                bond.strength, bond.memory, section, bond.bond.stiffness, load);
+	        });
+}
+
+bool Law2_ScGeom_BondedPhys_Bonded::failsInEsys(const BondedPhys& phys)
+{
+	try {
+		ddem::requireKnown(ddem::BondConvention::Esys, phys.breaks());
+	} catch (const std::invalid_argument& error) {
+		stopAfterStep(*scene, error.what());
+		return false;
+	}
+	const ddem::BondStress stress { phys.normalStress, phys.shearStress };
+	ddem::BondStrength     strength {};
+	std::copy_n(phys.strengthNumbers.data(), ddem::mostStrengths, strength.begin());
+	using Criterion = ddem::MohrCoulomb;
+	return Criterion::overload(ddem::fromNumbers<Criterion::Strength<Real>>(strength.data()), stress) > 0;
+}
+
+bool Law2_ScGeom_BondedPhys_Bonded::replaceBond(Interaction& I, const ddem::BondStress& stress)
 {
 	applyContact(I, breakBond(I, stress));
 	return touching(I);
 }
 
-ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I, const ddem::BondStress& stress)
+ddem::ContactLoads Law2_ScGeom_BondedPhys_Bonded::breakBond(Interaction& I, const ddem::BondStress& stress)
 {
 	const auto&           geom   = static_cast<const ScGeom&>(*I.geom);
 	auto&                 phys   = static_cast<BondedPhys&>(*I.phys);
 	const State &state1 = *Body::byId(I.getId1(), scene)->state, &state2 = *Body::byId(I.getId2(), scene)->state;
 	const Vector3r        branch = branchOf(I);
-	const ddem::BondLoads loads = ddem::bondLoads(
-	        bondConvention(), phys.bond(geom), ddem::spaceVector(branch), ddem::rotation(state1.ori),
-	        ddem::rotation(state2.ori));
+	ddem::BreakableBond   bond   = phys.bond(geom); // damage has grown already: the loads are what is left of them
+	ddem::BondAnswer      answer {};
+	const ddem::BondLoads loads = loadsOf(bond, branch, state1, state2, answer);
 	const Real reach = geom.radius1 + geom.radius2;
 	// Where particles were bonded with an overlap it bears no load, before and after the bond breaks;
 	// ESyS-Particle's rest length is always the sum of the radii.
+	const ddem::BondFailure mode = bond.criterion->mode(bond.strength, bond.memory, stress);
 	phys.part(esys ? reach : math::min(reach, phys.bondLength));
 	const ddem::ContactLoads contact = contactLoadsOf(I);
 
@@ -96,7 +123,7 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I,
 	parted->pos          = state1.pos + branch / 2;
 	parted->normal       = ddem::eigenVector(loads.axis);
 	parted->radius       = phys.bondRadius;
-	parted->tension      = ddem::failureMode(phys.strength(), stress) == ddem::BondFailure::Tension;
+	parted->mode         = int(mode);
 	parted->normalStress = stress.normal;
 	parted->shearStress  = stress.shear;
 	// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the
@@ -107,11 +134,13 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::breakBond(Interaction& I,
 	const Real contactPower = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2);
 	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped
 	        + 0.5 * scene->dt * (bondPower - contactPower);
+	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::BondBroken, parted->energy);
+	parted->energy += bond.criterion->lostBy(bond.memory);
 	record(parted);
 	return contact;
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::touching(const Interaction& I) const
+bool Law2_ScGeom_BondedPhys_Bonded::touching(const Interaction& I) const
 {
 	const auto& geom = static_cast<const ScGeom&>(*I.geom);
 	if (!isSphere(*Body::byId(I.getId1(), scene)) || !isSphere(*Body::byId(I.getId2(), scene)))
@@ -121,7 +150,7 @@ bool Law2_ScGeom_BondedPhys_MohrCoulomb::touching(const Interaction& I) const
 	return branchOf(I).norm() < geom.radius1 + geom.radius2;
 }
 
-ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Interaction& I)
+ddem::ContactLoads Law2_ScGeom_BondedPhys_Bonded::contactLoadsOf(const Interaction& I)
 {
 	const auto&    geom   = static_cast<const ScGeom&>(*I.geom);
 	auto&          phys   = static_cast<BondedPhys&>(*I.phys);
@@ -151,13 +180,13 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_MohrCoulomb::contactLoadsOf(const Inte
 	return loads;
 }
 
-bool Law2_ScGeom_BondedPhys_MohrCoulomb::advanceContact(Interaction& I)
+bool Law2_ScGeom_BondedPhys_Bonded::advanceContact(Interaction& I)
 {
 	applyContact(I, contactLoadsOf(I));
 	return touching(I);
 }
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(
+void Law2_ScGeom_BondedPhys_Bonded::applyLoads(
         const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2)
 {
 	scene->forces.addForce(I.getId1(), force);
@@ -166,24 +195,23 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::applyLoads(
 	scene->forces.addTorque(I.getId2(), moment2);
 }
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
+void Law2_ScGeom_BondedPhys_Bonded::applyContact(const Interaction& I, const ddem::ContactLoads& loads)
 {
 	if (loads.touching) applyLoads(I, loads.force, loads.moment1, loads.moment2);
 	if (scene->trackEnergy) bookContact(loads);
 }
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::bookContact(const ddem::ContactLoads& loads)
+void Law2_ScGeom_BondedPhys_Bonded::bookContact(const ddem::ContactLoads& loads)
 {
 	energy.add(*scene->energy, BondedEnergy::ContactElastic, loads.energy);
 	energy.add(*scene->energy, BondedEnergy::Friction, loads.dissipated);
 	if (loads.damped != 0) energy.add(*scene->energy, BondedEnergy::ContactDamping, loads.damped);
 }
 
-void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bond)
+void Law2_ScGeom_BondedPhys_Bonded::record(const shared_ptr<BrokenBond>& bond)
 {
 	bond->iter = scene->iter;
 	bond->time = scene->time;
-	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::BondBroken, bond->energy);
 
 	const std::lock_guard<std::mutex> lock(recording);
 	const auto                        later = [&bond](const shared_ptr<BrokenBond>& other) {
@@ -195,7 +223,7 @@ void Law2_ScGeom_BondedPhys_MohrCoulomb::record(const shared_ptr<BrokenBond>& bo
 	broken.insert(place, bond);
 }
 
-boost::python::list Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds() const
+boost::python::list Law2_ScGeom_BondedPhys_Bonded::brokenBonds() const
 {
 	std::vector<shared_ptr<BrokenBond>> now;
 	{
@@ -208,13 +236,13 @@ boost::python::list Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds() const
 	return list;
 }
 
-long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount() const
+long Law2_ScGeom_BondedPhys_Bonded::brokenCount() const
 {
 	const std::lock_guard<std::mutex> lock(recording);
 	return long(broken.size());
 }
 
-long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const boost::python::object& ids) const
+long Law2_ScGeom_BondedPhys_Bonded::brokenAmong(const boost::python::object& ids) const
 {
 	const std::vector<Body::id_t> those = bodyIdsOf(ids);
 	std::vector<char> among(size_t(those.empty() ? 0 : *std::max_element(those.begin(), those.end()) + 1));
@@ -226,7 +254,7 @@ long Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong(const boost::python::object
 	        broken.begin(), broken.end(), [&](const auto& bond) { return has(bond->id1) && has(bond->id2); });
 }
 
-boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::brokenArrays() const
+boost::python::dict Law2_ScGeom_BondedPhys_Bonded::brokenArrays() const
 {
 	std::vector<shared_ptr<BrokenBond>> now;
 	{
@@ -263,9 +291,9 @@ namespace {
 
 } // namespace
 
-boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bondArrays() const { return yade::bondArrays(bondsOfScene()); }
+boost::python::dict Law2_ScGeom_BondedPhys_Bonded::bondArrays() const { return yade::bondArrays(bondsOfScene()); }
 
-boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
+boost::python::dict Law2_ScGeom_BondedPhys_Bonded::bonds() const
 {
 	std::map<std::pair<int, int>, BondNow> all;
 	for (const BondNow& bond : bondsOfScene())
@@ -286,7 +314,7 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::bonds() const
 	return result;
 }
 
-boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
+boost::python::dict Law2_ScGeom_BondedPhys_Bonded::largestStresses() const
 {
 	const auto current = Omega::instance().getScene();
 	for (const auto& engine : current->engines)
@@ -299,13 +327,9 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 		const State&          state1 = *(*current->bodies)[I->getId1()]->state;
 		const State&          state2 = *(*current->bodies)[I->getId2()]->state;
 		const Vector3r        branch = state2.pos - state1.pos; // bonds know no periodic boundaries
-		const ddem::Bond      bond   = phys->bond(static_cast<const ScGeom&>(*I->geom));
-		const ddem::BondLoads loads  = ddem::bondLoads(
-                        bondConvention(),
-                        bond,
-                        ddem::spaceVector(branch),
-                        ddem::rotation(state1.ori),
-                        ddem::rotation(state2.ori));
+		ddem::BreakableBond   bond   = phys->bond(static_cast<const ScGeom&>(*I->geom));
+		ddem::BondAnswer      answer {};
+		const ddem::BondLoads   loads = loadsOf(bond, branch, state1, state2, answer);
 		const ddem::BondSection section(phys->bondRadius);
 		const auto &            force = loads.section.force, &moment = loads.section.moment;
 		tension = math::max(tension, math::abs(force.x) / section.area);
@@ -321,7 +345,7 @@ boost::python::dict Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses() const
 	return result;
 }
 
-Real Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep()
+Real Law2_ScGeom_BondedPhys_Bonded::criticalTimeStep()
 {
 	return bondedStableStep(*Omega::instance().getScene()).step;
 }

@@ -1,5 +1,5 @@
 // GPL v2 or later, see LICENSE.
-// The law of bonded particles: elastic bond, Mohr-Coulomb failure, frictional contact.
+// The law of bonded particles: bonds that break by a criterion of their own, and frictional contacts.
 #pragma once
 
 #include <pkg/bonded/BondedEnergy.hpp>
@@ -13,9 +13,9 @@
 
 namespace yade {
 
-class Law2_ScGeom_BondedPhys_MohrCoulomb : public LawFunctor {
+class Law2_ScGeom_BondedPhys_Bonded : public LawFunctor {
 public:
-	virtual ~Law2_ScGeom_BondedPhys_MohrCoulomb() = default;
+	virtual ~Law2_ScGeom_BondedPhys_Bonded() = default;
 	bool go(shared_ptr<IGeom>&, shared_ptr<IPhys>&, Interaction*) override;
 
 	ddem::BondConvention bondConvention() const
@@ -38,9 +38,15 @@ public:
 	bool touching(const Interaction& I) const;
 	/// Adds the energies of a contact to the book.
 	void bookContact(const ddem::ContactLoads& loads);
-	/// Adds stored energy to the book.
-	void bookBondEnergy(Real stored) { energy.add(*scene->energy, BondedEnergy::BondElastic, stored); }
-	void postLoad(Law2_ScGeom_BondedPhys_MohrCoulomb&);
+	/// Adds energies of bonds to the book: stored now, and taken by their criteria in this step [J].
+	void bookBondEnergy(Real stored, Real lost)
+	{
+		energy.add(*scene->energy, BondedEnergy::BondElastic, stored);
+		if (lost != 0) energy.add(*scene->energy, BondedEnergy::BondSoftening, lost);
+	}
+	/// Whether the loads of the last step break a bond, which is when ESyS-Particle looks.
+	bool failsInEsys(const BondedPhys& phys);
+	void postLoad(Law2_ScGeom_BondedPhys_Bonded&);
 
 	boost::python::list brokenBonds() const;
 	long                brokenCount() const;
@@ -58,7 +64,7 @@ public:
 
 	FUNCTOR2D(ScGeom, BondedPhys);
 	// clang-format off
-	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Law2_ScGeom_BondedPhys_MohrCoulomb, LawFunctor,
+	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(Law2_ScGeom_BondedPhys_Bonded, LawFunctor,
 		"Forces and moments of bonds, their failure, and friction of pairs that are not or no longer bonded, "
 		"after the bonds of ESyS-Particle [Wang2009]_ [Weatherley2014]_.\n\n"
 		"**Bond.** A round beam of radius :math:`R=d_0/2` between the centres, :math:`d_0` apart when it was "
@@ -67,21 +73,24 @@ public:
 		"one element of the geometrically exact beam [Simo1985]_ with one integration point. They derive from "
 		"an energy, so the bond is exactly conservative, for unequal radii and large rotations too. The rest "
 		"length is :math:`d_0`.\n\n"
-		"**Failure.** :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J`; the bond is removed in "
-		"the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds the tension limit "
-		"(see :yref:`BondedMat`). There is no limit in pure compression.\n\n"
-		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_MohrCoulomb.convention>` *esys* bonds "
+		"**Failure** is a criterion that the material says, and bonds of several may be in one scene. "
+		":yref:`BondedMat`: Mohr-Coulomb, with :math:`\\sigma=F_n/A+|M_b|R/I`, :math:`\\tau=|F_s|/A+|M_t|R/J` "
+		"the bond breaks in the step in which :math:`\\tau>C-\\sigma\\tan\\varphi` or :math:`\\sigma` exceeds "
+		"the tension limit; there is no limit in pure compression. :yref:`ParallelBondMat`: strengths in "
+		"tension and shear free of each other. :yref:`SofteningBondMat`: softens over stated energies.\n\n"
+		"**Convention.** With :yref:`convention<Law2_ScGeom_BondedPhys_Bonded.convention>` *esys* bonds "
 		"and contacts are those of ESyS-Particle 2.3.5, to compare with it: half of the bending moment, rest "
 		"length :math:`r_1+r_2`, moment arms that are not conservative for unequal radii (the stiffness is not "
 		"symmetric: a sample left alone slowly begins to shake, at any time step), failure one step later, "
-		"friction that sticks again after every slip; gradual friction and contact damping have no effect.\n\n"
+		"friction that sticks again after every slip; gradual friction and contact damping have no effect, "
+		"other criteria than Mohr-Coulomb are refused.\n\n"
 		"**Contact.** Springs equal to those of a bond, Coulomb's friction with a static coefficient until the "
 		"first slip and a dynamic one from then on. A bond of spheres that touched and that breaks under "
 		"compression keeps its normal force; its tangential force starts from zero. Gradual friction and "
 		"viscous damping are options of :yref:`BondedMat`.\n\n"
 		"**Energy.** With :yref:`O.trackEnergy<Omega.trackEnergy>`: *bondElastic*, *contactElastic* (now "
-		"stored), *bondBroken* (elastic energy lost with broken bonds), *friction*, *contactDamping* "
-		"(dissipated) [J].\n\n"
+		"stored), *bondBroken* (elastic energy lost with broken bonds), *bondSoftening* (taken by bonds that "
+		"soften), *friction*, *contactDamping* (dissipated) [J].\n\n"
 		"**Speed.** In a :yref:`BondedInteractionLoop` all bonds are computed together, several times as fast "
 		"as one by one in an :yref:`InteractionLoop`.\n\n"
 		"**Geometry.** Contacts take every :yref:`ScGeom`: spheres, clump members, :yref:`Wall`, :yref:`Box`, "
@@ -97,32 +106,32 @@ public:
 		((vector<shared_ptr<BrokenBond>>,broken,,(Attr::readonly|Attr::hidden),
 			"Records of broken bonds, in order of step and ids")),
 		/*ctor*/,
-		.def("brokenBonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenBonds,
+		.def("brokenBonds",&Law2_ScGeom_BondedPhys_Bonded::brokenBonds,
 			"List of :yref:`BrokenBond`, in order of step, then ids, whatever the number of threads.")
-		.def("brokenCount",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenCount,"Number of broken bonds.")
-		.def("brokenAmong",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenAmong,(boost::python::arg("ids")),
+		.def("brokenCount",&Law2_ScGeom_BondedPhys_Bonded::brokenCount,"Number of broken bonds.")
+		.def("brokenAmong",&Law2_ScGeom_BondedPhys_Bonded::brokenAmong,(boost::python::arg("ids")),
 			"Number of broken bonds between bodies of a list or array of ids.")
-		.def("brokenArrays",&Law2_ScGeom_BondedPhys_MohrCoulomb::brokenArrays,
-			"What :yref:`brokenBonds<Law2_ScGeom_BondedPhys_MohrCoulomb.brokenBonds>` lists, "
+		.def("brokenArrays",&Law2_ScGeom_BondedPhys_Bonded::brokenArrays,
+			"What :yref:`brokenBonds<Law2_ScGeom_BondedPhys_Bonded.brokenBonds>` lists, "
 			"as a dictionary of numpy arrays, a row a record: *id1*, *id2*, *step*, *time* [s], "
-			"*position* [m] and *normal* of the crack, *radius* [m], *tension* (1, or 0 for shear), "
+			"*position* [m] and *normal* of the crack, *radius* [m], *mode* (1 tension, 2 shear), "
 			"*normal_stress*, *shear_stress* [Pa], *energy* [J].")
-		.def("bonds",&Law2_ScGeom_BondedPhys_MohrCoulomb::bonds,
+		.def("bonds",&Law2_ScGeom_BondedPhys_Bonded::bonds,
 			"All bonds that hold, in order of ids, as a dictionary of lists: *ids* (pairs), "
 			"*normalStress*, *shearStress* [Pa] of the last step, *radius* [m].")
-		.def("bondArrays",&Law2_ScGeom_BondedPhys_MohrCoulomb::bondArrays,
+		.def("bondArrays",&Law2_ScGeom_BondedPhys_Bonded::bondArrays,
 			"The same as numpy arrays, many times as fast, with *axialForce* (tension positive) and "
 			"*shearForce* (its size) [N].")
-		.def("largestStresses",&Law2_ScGeom_BondedPhys_MohrCoulomb::largestStresses,
+		.def("largestStresses",&Law2_ScGeom_BondedPhys_Bonded::largestStresses,
 			"Largest stress that each part of its load makes in any bond that holds, at the present "
 			"positions, as a dictionary [Pa]: *tension* :math:`|F_n|/A` (either sign), "
 			"*bending* :math:`|M_b|R/I`, *shear* :math:`|F_s|/A`, "
 			"*torsion* :math:`|M_t|R/J`. All zero without bonds.")
-		.def("bytesPerBond",&Law2_ScGeom_BondedPhys_MohrCoulomb::bytesPerBond,
+		.def("bytesPerBond",&Law2_ScGeom_BondedPhys_Bonded::bytesPerBond,
 			"Bytes that YADE's objects for a bond take: its Interaction, geometry and physics, without the "
 			"arrays of a :yref:`BondedInteractionLoop`.")
 		.staticmethod("bytesPerBond")
-		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_MohrCoulomb::criticalTimeStep,
+		.def("criticalTimeStep",&Law2_ScGeom_BondedPhys_Bonded::criticalTimeStep,
 			"Rigorous bound on the time step [s] for the bonds and contacts of the current scene, those of "
 			"other laws with two springs included, and for its elastic walls: :math:`2/\\omega` of the "
 			"worst pair, each particle's mass shared out between its springs; about a tenth below the "
@@ -141,6 +150,10 @@ private:
 	/// Loads of a contact, of any geometry, and what it remembers of them.
 	ddem::ContactLoads contactLoadsOf(const Interaction& I);
 	Vector3r branchOf(const Interaction& I) const;
+	/// Loads of a bond, one step of its criterion included.
+	ddem::BondLoads
+	loadsOf(ddem::BreakableBond& bond, const Vector3r& branch, const State& state1, const State& state2,
+	        ddem::BondAnswer& answer) const;
 	void applyLoads(const Interaction& I, const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2);
 	void applyContact(const Interaction& I, const ddem::ContactLoads& loads);
 	void record(const shared_ptr<BrokenBond>& bond);
@@ -150,6 +163,6 @@ private:
 	SingleProcess process;
 	mutable std::mutex recording;
 };
-REGISTER_SERIALIZABLE(Law2_ScGeom_BondedPhys_MohrCoulomb);
+REGISTER_SERIALIZABLE(Law2_ScGeom_BondedPhys_Bonded);
 
 } // namespace yade
