@@ -21,10 +21,10 @@ BondedNewtonIntegrator* BondedNewtonIntegrator::in(const Scene& scene)
 	return nullptr;
 }
 
-BondedSpheres* BondedNewtonIntegrator::spheres() const
+BondedSpheres* BondedNewtonIntegrator::spheres(const Scene& of) const
 {
-	auto* const loop = BondedInteractionLoop::in(*scene);
-	return loop && !loop->dead && BondedNewtonIntegrator::in(*scene) == this ? loop->spheresInArrays() : nullptr;
+	auto* const loop = BondedInteractionLoop::in(of);
+	return loop && !loop->dead && BondedNewtonIntegrator::in(of) == this ? loop->spheresInArrays() : nullptr;
 }
 
 void BondedNewtonIntegrator::action()
@@ -38,7 +38,7 @@ void BondedNewtonIntegrator::action()
 			        "wrong order in O.engines: BondedNewtonIntegrator comes before BondedInteractionLoop, "
 			        "so that it would not use its forces; put it after");
 	}
-	auto* const spheresHere = spheres();
+	auto* const spheresHere = spheres(*scene);
 	inArrays                = spheresHere ? spheresHere->movedHere() : 0;
 	if (!spheresHere) return NewtonIntegrator::action();
 	const std::lock_guard<std::mutex> lock(loop->busy);

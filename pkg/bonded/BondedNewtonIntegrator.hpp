@@ -19,8 +19,9 @@ public:
 	static BondedNewtonIntegrator* in(const Scene& scene);
 	/// Number of spheres that it moved in arrays in the last step.
 	long moved() const { return inArrays; }
-	/// Spheres that it moves in this step, null where there are none.
-	BondedSpheres* spheres() const;
+	/// Spheres that it moves in this step of a scene, null where there are none. For other engines, too:
+	/// after loading, an engine that has not acted yet does not know its scene.
+	BondedSpheres* spheres(const Scene& of) const;
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(BondedNewtonIntegrator, NewtonIntegrator,

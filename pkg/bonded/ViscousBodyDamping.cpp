@@ -74,7 +74,7 @@ void ViscousBodyDamping::action()
 	const ddem::ViscousDamper linear(viscosity, scene->dt), angular(rotationalViscosity, scene->dt);
 	const auto&               bodies = *scene->bodies;
 	const auto* const         arrays = dynamic_cast<const BondedNewtonIntegrator*>(&integrator);
-	BondedSpheres* const      moved  = arrays ? arrays->spheres() : nullptr;
+	BondedSpheres* const      moved  = arrays ? arrays->spheres(*scene) : nullptr;
 	const long                size   = long(moved ? moved->others().size() : bodies.size());
 	const bool                book   = scene->trackEnergy;
 	Real                      loss   = 0;

@@ -38,17 +38,16 @@ from yade import (
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
 	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
 	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O,
-	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, Wall, utils
+	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter, provenance
 from . import packing as packings
 from .arrays import BodyIds, fixed
+from .bonded_loads import Confinement, Platens, ServoPlatens, confine, platens, servo, triaxial
 
 #: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
 DEFAULT_GAP = 0.0025
-
-_GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bonded to it (tutorial of ESyS-Particle)
 
 
 @meter.makes_particles
@@ -306,148 +305,23 @@ class BondedSample:
 		return float(np.pi * (self.broken["radius"]**2).sum())
 
 
-def platens(
-	sample, velocity, ramp=0.0, stiffness=100e9, both=True, bonded=False, shear_stiffness=0.0, area=None
-):
-	"""Set elastic walls below and above a sample and drive them towards each other along y, or apart.
-
-	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face,
-		and their area is that of the face.
-	:param velocity: speed of each wall [m/s], positive compresses, negative pulls (bonded walls only).
-	:param ramp: time over which the speed grows linearly from zero [s].
-	:param stiffness: of the walls, K [Pa]; a sphere of radius r feels the spring pi r K.
-	:param both: True: both walls move; False: the lower one stands still.
-	:param bonded: True: the spheres whose centre is within 1.1 of their radius from a wall are bonded to it, for
-		good, and feel its spring in both directions.
-	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract.
-		ESyS-Particle's NRotBondedWall has that of *stiffness*.
-	:param area: of the loaded face [m²], for specimens that do not fill their box: pi/4 D² of a cylinder. None:
-		that of the box.
-	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
-	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not
-		positive, no sphere at a wall that is to be bonded. Nothing is appended then.
-	"""
-	if not math.isfinite(velocity) or velocity == 0:
-		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
-	if velocity < 0 and not bonded:
-		raise ValueError(
-			f"velocity = {velocity} m/s: these walls only push; a positive velocity compresses, and "
-			"bonded=True makes walls that pull"
-		)
-	if not (ramp >= 0 and math.isfinite(ramp)):
-		raise ValueError(f"ramp = {ramp} s must not be negative")
-	width, _, depth = sample.upper - sample.lower
-	box = float(width * depth)
-	if area is not None and not 0 < area <= 1.001 * box:
-		raise ValueError(
-			f"area = {area} m² must be positive, and not above that of the sample's box, {box:.6g} m²"
-		)
-	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
-	held = []
-	if bonded:
-		heights, reach = sample.positions[:, 1], _GLUED * sample.radii
-		held = [sample.ids[abs(heights - face) < reach].tolist() for face in (sample.lower[1], sample.upper[1])]
-		if not all(held):
-			raise ValueError(
-				f"no sphere is within {_GLUED} radii of the {'upper' if held[0] else 'lower'} face of "
-				"the sample: nothing to bond the wall to"
-			)
-	O.materials.append(material)
-	bottom, top = (
-		utils.wall(float(face), axis=1, sense=sense, material=material)
-		for face, sense in ((sample.lower[1], 1), (sample.upper[1], -1))
-	)
-	bottom, top = (O.bodies.append(wall) for wall in (bottom, top))
-	for wall, spheres in zip((bottom, top), held):
-		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
-	return Platens(sample, bottom, top, velocity, ramp, both, area)
-
-
-class Platens:
-	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11).
-	Compression is positive."""
-
-	def __init__(self, sample, bottom, top, velocity, ramp, both, area=None):
-		self._measure(sample, bottom, top, sample.upper[1] - sample.lower[1], area)
-		self.engines = [
-			RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)
-		]
-		if both:
-			self.engines.append(
-				RampedTranslationEngine(
-					ids=[bottom], translationAxis=(0, 1, 0), velocity=velocity, rampTime=ramp
-				)
-			)
-
-	@classmethod
-	def from_scene(cls, sample, area=None):
-		"""The platens on a sample of the current scene, for a scene that was loaded.
-
-		:param sample: as from :meth:`BondedSample.from_scene`
-		:param area: of the loaded face [m²], to be given again where it was given; None: that of the box around
-			the spheres at the start.
-		:raises RuntimeError: the scene has not two Walls of ElasticWallMat across y
-		"""
-		walls = [
-			b for b in O.bodies
-			if b and isinstance(b.shape, Wall) and b.shape.axis == 1 and isinstance(b.mat, ElasticWallMat)
-		]
-		if len(walls) != 2:
-			raise RuntimeError(
-				f"the scene has {len(walls)} Walls of ElasticWallMat across y, where platens are two"
-			)
-		bottom, top = sorted(walls, key=lambda wall: wall.state.refPos[1])
-		self = cls.__new__(cls)
-		height = top.state.refPos[1] - bottom.state.refPos[1]
-		self._measure(sample, bottom.id, top.id, height, area)
-		self.engines = [
-			e for i in (top.id, bottom.id) for e in O.engines
-			if isinstance(e, RampedTranslationEngine) and list(e.ids) == [i]
-		]
-		return self
-
-	def _measure(self, sample, bottom, top, height, area):
-		self.sample = sample
-		self.bottom, self.top = bottom, top  #: body ids of the walls
-		self.height = height  #: distance of the walls at the start [m]
-		width, _, depth = sample.upper - sample.lower
-		self.area = float(width * depth) if area is None else area  #: of the loaded face [m²]
-
-	@property
-	def force_top(self):
-		"""Force of the sample on the upper wall [N]."""
-		return O.forces.f(self.top)[1]
-
-	@property
-	def force_bottom(self):
-		"""Force of the sample on the lower wall [N]."""
-		return -O.forces.f(self.bottom)[1]
-
-	@property
-	def stress(self):
-		"""Mean stress of both ends [Pa], eq. 9: (F_top + F_bottom)/2A."""
-		return 0.5 * (self.force_top + self.force_bottom) / self.area
-
-	@property
-	def strain(self):
-		"""Approach of the walls over their first distance [-], eq. 11."""
-		return 1 - (O.bodies[self.top].state.pos[1] - O.bodies[self.bottom].state.pos[1]) / self.height
-
-
 def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="consistent"):
 	"""The engines of a bonded scene in their order; append recorders to the list.
 
 	Spheres of :yref:`BondedMat` meet each other, and walls, boxes and facets of :yref:`BondedMat`,
 	:yref:`ElasticWallMat` or :yref:`FrictMat`.
 
-	:param platens: :class:`Platens` whose motion is included.
+	:param platens: :class:`Platens`, :class:`Confinement`, or a list of them, whose motion is included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
 	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle
 		2.3.5, to compare with it, see :yref:`Law2_ScGeom_BondedPhys_Bonded`.
 	"""
-	for engine in platens.engines if platens else ():
-		engine.ahead = convention == "esys"
+	loads = platens if isinstance(platens, (list, tuple)) else [platens] if platens else []
+	drives = [engine for load in loads for engine in load.engines]
+	for engine in drives:
+		if isinstance(engine, RampedTranslationEngine):
+			engine.ahead = convention == "esys"
 	rotational = viscosity if rotational_viscosity is None else rotational_viscosity
 	damping = (
 		[ViscousBodyDamping(viscosity=viscosity, rotationalViscosity=rotational, label="bodyDamping")]
@@ -474,7 +348,7 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 			],
 			label="interactions",
 		),
-		*(platens.engines if platens else []),
+		*drives,
 		*damping,
 		BondedNewtonIntegrator(damping=0, label="newton"),
 	]
