@@ -19,7 +19,7 @@ CREATE_LOGGER(DeformableEngine);
 
 namespace {
 
-	constexpr int stateVersion = 3; ///< 2: 0.1.0, without names
+	constexpr int stateVersion = 4; ///< 2: 0.1.0, without names; 3: without works of edges
 
 } // namespace
 
@@ -89,13 +89,13 @@ StateStore DeformableEngine::stateToCarry(const Scene& of) const
 	if (sample && virgin) return {}; // State has everything, and the shapes what else there is at the start
 	if (sample) return sample->store();
 	if (savedVersion != 0) {
-		if (savedVersion != stateVersion)
+		if (savedVersion != stateVersion && savedVersion != 3)
 			throw std::runtime_error(
 			        "the scene was saved with version " + std::to_string(savedVersion)
 			        + " of the state of deformable triangles" + (savedVersion == 2 ? " (plugin 0.1.0)" : "")
 			        + "; this plugin reads version " + std::to_string(stateVersion)
 			        + ": load it with the plugin that saved it");
-		return StateStore::fromSaved({ savedFields, savedState });
+		return StateStore::fromSaved({ savedFields, savedState }, savedVersion == 3 ? 3 : 5);
 	}
 	return storeOfFormerEngines(of, trianglesOf(of, settings(of)));
 }
@@ -122,6 +122,7 @@ void DeformableEngine::readIfNeeded(Scene& of)
 	savedFields.clear();
 	savedVersion = 0;
 	stale        = false;
+	edgeLoading.restart();
 	const auto& groups = sample->system->group;
 	guard.restart(std::any_of(
 	        groups.begin(), groups.end(), [](const ddem::GroupPointer& g) { return g->stiffensInRuns(); }));
@@ -236,6 +237,7 @@ void DeformableEngine::action()
 	if (!warning.empty()) LOG_WARN(warning);
 	const bool forces = forcesAdded(anythingDone);
 	sample->importForces(scene->forces, forces);
+	if (!order.edgeEngines.empty() || edgeLoading.active()) edgeLoading.apply(*scene, *sample, order.edgeEngines);
 
 	const Vector3r     felt = order.gravityFelt(*this);
 	ddem::StepSettings step;
@@ -247,6 +249,7 @@ void DeformableEngine::action()
 	try {
 		const ddem::StepEnergy energy = sample->system->step(step);
 		if (step.energy) bookEnergy(energy);
+		sample->lastGravity = step.gravity;
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
@@ -334,6 +337,9 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 	book.add(-e.gravityWork, "gravWork", entry.gravityWork, false);
 	book.add(-e.externalWork, "externalWork", entry.externalWork, false);
 	book.add(e.dampingLoss, "nonviscDamp", entry.dampingLoss, false);
+	if (e.edgeWork != 0 || entry.edgeWork >= 0) book.add(-e.edgeWork, "edgeWork", entry.edgeWork, false);
+	if (e.edgeAbsorption != 0 || entry.edgeAbsorption >= 0)
+		book.add(e.edgeAbsorption, "edgeAbsorption", entry.edgeAbsorption, false);
 }
 
 // ---- saving ---------------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include <pkg/ddem/DeformableEngine.hpp>
 #include <pkg/ddem/DeformableNode.hpp>
 #include <pkg/ddem/DeformableTimeStepper.hpp>
+#include <pkg/ddem/EdgeEngine.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
 #include <core/TimeStepper.hpp>
@@ -28,7 +29,7 @@ namespace {
 			                                   "GlobalStiffnessTimeStepper",
 			                                   "DeformableTimeStepper",
 			                                   "DeformableEngine" };
-		return names.count(engine.getClassName()) > 0;
+		return names.count(engine.getClassName()) > 0 || dynamic_cast<const EdgeEngine*>(&engine);
 	}
 
 	/// Engines that add forces to the bodies that they name, in every step.
@@ -147,9 +148,11 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		                         "DeformableTimeStepper.largest to the step that they need");
 	collectForces = false;
 	integrators.clear();
+	edgeEngines.clear();
 	for (std::size_t i = 0; i < now.size(); i++) {
 		const bool between = long(i) > resetter && long(i) < mine;
 		if (between && !isQuiet(*now[i]) && !dynamic_cast<const KinematicEngine*>(now[i])) collectForces = true;
+		if (const auto* edges = dynamic_cast<const EdgeEngine*>(now[i])) edgeEngines.push_back(edges);
 		if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(now[i])) {
 			integrators.push_back(newton);
 			if (long(i) < mine && (newton->mask <= 0 || (newton->mask & self.groupMask)))

@@ -313,6 +313,8 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 	book.gravityWork        = known.pendingWork[0];
 	book.externalWork       = known.pendingWork[1];
 	book.dampingLoss        = known.pendingWork[2];
+	book.edgeWork           = known.pendingWork[3];
+	book.edgeAbsorption     = known.pendingWork[4];
 	const auto lastVelocity = [](std::vector<double>& to, std::size_t i, const StateStore::Point& from) {
 		std::copy(from.lastVelocity.begin(), from.lastVelocity.end(), &to[2 * i]);
 	};

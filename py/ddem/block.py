@@ -263,6 +263,13 @@ class Block:
 		return fixed(engine.array("nodeForce")[self._rows(engine, "node")])
 
 	@property
+	def reactions(self):
+		"""Forces that hold the nodes (n, 2) [N], against all others of the last step: internal ones, loads on
+		edges and nodes, weight; zero in directions in which a node is free.
+		"""
+		return self._of_nodes("reactions", "reaction")
+
+	@property
 	def stress(self):
 		"""Stress of the sub-elements (m, 3, 4): xx, yy, zz, xy in global axes [Pa]."""
 		return self._values("stress", "stress")
@@ -330,12 +337,33 @@ class Block:
 		"""
 		return self.node_ids[self.mesh.boundary(side)]
 
+	def edges(self, side=None):
+		"""Pairs (b, 2) of body ids of the edges of the border whose two nodes both are on a side, as
+		:meth:`boundary` takes it; all when left out. The block lies on the left of the way from the first to
+		the second.
+
+		:raises ValueError: no such side or node, see :meth:`mesh.Mesh.boundary`; no edge joins the nodes.
+		"""
+		edges = self.mesh.border_between(self.mesh.boundary(side))
+		if not len(edges):
+			raise ValueError(
+				f"edges({side!r}): no edge of the border joins two of the nodes there; name whole edges"
+			)
+		return self.node_ids[edges]
+
 	def hold(self, ids, dofs="xy"):
 		"""Hold the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity then
 		stays as prescribed (0 unless set)."""
 		for i in np.atleast_1d(BodyIds(ids)):
 			state = O.bodies[i].state
 			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | set(dofs)))
+
+	def release(self, ids, dofs="xy"):
+		"""Let go of the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity
+		stays what it is."""
+		for i in np.atleast_1d(BodyIds(ids)):
+			state = O.bodies[i].state
+			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) - set(dofs)))
 
 	def drive(self, ids, velocity):
 		"""Prescribe the velocity (vx, vy) [m/s] of these nodes, None leaves a direction free;
@@ -381,6 +409,11 @@ class Block:
 		engine = self._engine(name)
 		rows = self._rows(engine, "core")
 		return Field(engine.values(value)[rows], engine.values("tilePlace")[rows])
+
+	def _of_nodes(self, name, value):
+		"""What the engine computes of the nodes; the name is that of the block's property."""
+		engine = self._engine(name)
+		return fixed(engine.values(value)[self._rows(engine, "node")])
 
 	def _engine_if_any(self):
 		"""The engine of these triangles, None where O.engines has none."""

@@ -6,9 +6,9 @@ from yade import (
 )
 
 #: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
-EXTERNAL = ("externalWork", "gravWork")
+EXTERNAL = ("externalWork", "gravWork", "edgeWork")
 #: entries that a sound model cannot make negative: a law that creates energy borrows it there, without the total moving
-NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "nonviscDamp")
+NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "nonviscDamp", "edgeAbsorption")
 
 
 class EnergyBalance:

@@ -11,6 +11,7 @@ from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngin
 
 from . import meter
 from .block import Block
+from .edge_loads import absorb, pressure
 
 
 def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", bottom="bottom"):
