@@ -22,6 +22,8 @@ void EdgeTraction::postLoad(EdgeTraction&)
 	for (const Real value : factors)
 		if (!std::isfinite(value))
 			throw std::invalid_argument("EdgeTraction.factors must be finite numbers [-]");
+	for (const Vector2r& one : tractions)
+		if (!one.allFinite()) throw std::invalid_argument("EdgeTraction.tractions must be finite numbers [Pa]");
 	for (const Vector2r& pair : profile)
 		if (!pair.allFinite())
 			throw std::invalid_argument("EdgeTraction.profile must be finite numbers [-], a pair per edge");
@@ -46,6 +48,10 @@ void EdgeTraction::act(const OwnEdges& own, Real time, ddem::Motion& motion) con
 		throw std::invalid_argument(
 		        "EdgeTraction.profile has " + std::to_string(profile.size()) + " pairs for "
 		        + std::to_string(edges.size()) + " edges; give a pair of factors for each edge, or none");
+	if (!tractions.empty() && tractions.size() != 2 * edges.size())
+		throw std::invalid_argument(
+		        "EdgeTraction.tractions has " + std::to_string(tractions.size()) + " entries for "
+		        + std::to_string(edges.size()) + " edges; give two for each edge, or none");
 	if (!std::isfinite(pressure) || !std::isfinite(shear) || !traction.allFinite()) {
 		std::ostringstream text;
 		text << "EdgeTraction: pressure = " << pressure << " Pa, shear = " << shear << " Pa, traction = ("
@@ -66,6 +72,16 @@ void EdgeTraction::act(const OwnEdges& own, Real time, ddem::Motion& motion) con
 		auto &       start = motion.loads[edge.atStart].force, &end = motion.loads[edge.atEnd].force;
 		start = start + forces.start;
 		end   = end + forces.end;
+		if (tractions.empty()) continue;
+		const auto own = [&](bool second) {
+			const Vector2r& t = tractions[2 * edge.given + (second != edge.turned ? 1 : 0)];
+			return ddem::EdgeStress { 0, 0, { f * t[0], f * t[1] } };
+		};
+		// linear: one falls from the start to nothing, the other grows to the end
+		const auto first  = ddem::edgeForces(own(false), { share.start, 0 }, along, length, edge.thickness);
+		const auto second = ddem::edgeForces(own(true), { 0, share.end }, along, length, edge.thickness);
+		start             = start + first.start + second.start;
+		end               = end + first.end + second.end;
 	}
 }
 

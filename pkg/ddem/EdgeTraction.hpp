@@ -29,13 +29,16 @@ public:
 		"pressure, shear, traction, times and factors may be changed at any time. With O.trackEnergy the work "
 		"enters *edgeWork* [J] (negative: it comes from outside). ``ddem.loading.pressure`` makes one.\n\n"
 		"Errors: values that are not finite; times that do not rise or are not as many as the factors; a "
-		"profile that has not a pair for each edge; those of :yref:`EdgeEngine`. Limits: plane strain; a "
-		"pressure that follows is in equilibrium with stresses of the deformed edges, so the nominal stress "
-		"of a triangle differs from it by the strain.",
+		"profile that has not a pair for each edge, or tractions that are not two for each; those of "
+		":yref:`EdgeEngine`. Limits: plane strain; a pressure that follows is in equilibrium with stresses of "
+		"the deformed edges, so the nominal stress of a triangle differs from it by the strain.",
 		((Real,pressure,0,,"Normal pressure *p* [Pa], positive compresses"))
 		((Real,shear,0,,"Shear traction *q* [Pa] along the border, counter-clockwise about the material"))
 		((Vector2r,traction,Vector2r::Zero(),,
 			"Traction **t**\\ :sub:`0` [Pa] of a fixed direction (x, y), per length as pressure is"))
+		((vector<Vector2r>,tractions,,Attr::triggerPostLoad,
+			"Tractions [Pa] of each edge's own, added to the last: (x, y) at its first and at its second "
+			"node, linear in between, so two for each edge; none: zero"))
 		((bool,follower,true,,
 			"Whether normal, direction and length are those of the edge as it is now (true), or of the "
 			"beginning: a dead load"))

@@ -163,6 +163,11 @@ bool Exposure::materialsChanged(bool started)
 			        + ": DeformableTriangle.initialDamage is the damage [-] at the start, and the run has "
 			          "begun; give it before the first step (a material with less strength weakens "
 			          "a triangle during a run)");
+		if (started && now.initialStress != shapeValues[i].initialStress)
+			throw std::invalid_argument(
+			        placeOf(*cores[i])
+			        + ": DeformableTriangle.initialStress is the stress [Pa] at the start, and the run has "
+			          "begun; give it before the first step");
 	}
 	if (!changed) shapeChanges = DeformableTriangle::changes;
 	return changed;

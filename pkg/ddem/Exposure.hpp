@@ -60,7 +60,8 @@ public:
 	/// Whether the scene has other deformable bodies than when it was read (cheap unless bodies were added).
 	bool misses(const Scene& scene);
 	/** Whether a material or what a triangle's shape says has been changed since the arrays were built.
-	 * \param started whether steps have been made with them: then initialDamage can be changed no more
+	 * \param started whether steps have been made with them: then initialDamage and
+	 * initialStress can be changed no more
 	 * \throws std::invalid_argument if it was */
 	bool materialsChanged(bool started);
 

@@ -45,15 +45,11 @@ def pressure(
 		raise ValueError("pressure: give either ramp= or course=")
 	if ramp:
 		course = [(O.time, 0.0), (O.time + ramp, 1.0)]
-	table = np.array([] if course is None else course, float).reshape(-1, 2)
-	if not np.isfinite(table).all() or (np.diff(table[:, 0]) <= 0).any():
-		raise ValueError(
-			f"pressure: course = {course} must be pairs of rising times [s] and factors [-], all finite"
-		)
-	pairs = _pairs(block, edges)
+	times, factors = as_course(course)
+	pairs = pairs_of(block, edges)
 	return EdgeTraction(
-		edges=_as_yade(pairs), pressure=value, shear=shear, traction=Vector2(*values[2:]), follower=follower,
-		times=table[:, 0].tolist(), factors=table[:, 1].tolist(), profile=_profile(block, pairs, profile)
+		edges=as_yade(pairs), pressure=value, shear=shear, traction=Vector2(*values[2:]), follower=follower,
+		times=times, factors=factors, profile=_profile(block, pairs, profile)
 	)
 
 
@@ -78,10 +74,10 @@ def absorb(block, edges, keep=True, dofs="xy"):
 		raise ValueError(
 			f"absorb: dofs = {dofs!r} must be 'x', 'y' or 'xy', the directions in which nodes are let go"
 		)
-	pairs = _pairs(block, edges)
+	pairs = pairs_of(block, edges)
 	nodes = np.unique(pairs)
 	held = [set(O.bodies[int(i)].state.blockedDOFs) & set(dofs) for i in nodes]
-	engine = AbsorbingEdge(edges=_as_yade(pairs))
+	engine = AbsorbingEdge(edges=as_yade(pairs))
 	if keep and any(held):
 		rows = {int(i): row for row, i in enumerate(block.node_ids)}
 		forces = block.reactions[[rows[int(i)] for i in nodes]]
@@ -97,7 +93,7 @@ def absorb(block, edges, keep=True, dofs="xy"):
 	return engine
 
 
-def _pairs(block, edges):
+def pairs_of(block, edges):
 	"""Node ids (b, 2) of edges, named or given."""
 	if edges is None or isinstance(edges, str) or callable(edges):
 		return np.asarray(block.edges(edges))
@@ -110,7 +106,19 @@ def _pairs(block, edges):
 	return pairs
 
 
-def _as_yade(pairs):
+def as_course(course):
+	"""Times [s] and factors [-] of pairs; none where there is no course.
+
+	:raises ValueError: other than pairs of finite numbers with rising times.
+	"""
+	table = np.array([] if course is None else course, float).reshape(-1, 2)
+	if not np.isfinite(table).all() or (np.diff(table[:, 0]) <= 0).any():
+		raise ValueError(f"course = {course} must be pairs of rising times [s] and factors [-], all finite")
+	return table[:, 0].tolist(), table[:, 1].tolist()
+
+
+def as_yade(pairs):
+	"""Pairs of ids as engines take them."""
 	return [Vector2i(int(a), int(b)) for a, b in pairs]
 
 

@@ -93,6 +93,7 @@ def _at_rest():
 		state = body.state
 		if isinstance(body.shape, (DeformableNode, DeformableTriangle)) and (
 			state.pos != state.refPos or state.ori != Quaternion.Identity
+			or getattr(body.shape, "initialStress", None)
 		):
 			return False
 		if state.vel == still and state.angVel == still:
