@@ -6,6 +6,7 @@
 #include <pkg/ddem/Onlookers.hpp>
 #include <pkg/ddem/SampleArrays.hpp>
 #include <pkg/ddem/SceneReader.hpp>
+#include <pkg/ddem/ServoPlaten.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -220,7 +221,11 @@ void DeformableEngine::action()
 	const std::lock_guard<std::mutex> lock(acting);
 	if (sample) sample->endLook();
 	// before anything is read from bodies that an engine in the wrong place may have spoilt
-	if (order.check(*scene, *this)) EngineOrder::checkDrivenNodes(*scene);
+	if (order.check(*scene, *this)) {
+		EngineOrder::checkDrivenNodes(*scene);
+		for (ServoPlaten* platen : order.platens)
+			platen->lookAgain();
+	}
 	readIfNeeded(*scene);
 	const bool anythingDone = sample->shown == Shown::All; // by engines or Python, also to forces
 	if (sample->shown != Shown::Constrained) {
@@ -239,6 +244,7 @@ void DeformableEngine::action()
 	sample->importForces(scene->forces, forces);
 	if (!order.edgeEngines.empty() || edgeLoading.active()) edgeLoading.apply(*scene, *sample, order.edgeEngines);
 
+	const std::vector<ServoPlaten*> platens = preparePlatens();
 	const Vector3r     felt = order.gravityFelt(*this);
 	ddem::StepSettings step;
 	step.dt       = scene->dt;
@@ -250,11 +256,27 @@ void DeformableEngine::action()
 		const ddem::StepEnergy energy = sample->system->step(step);
 		if (step.energy) bookEnergy(energy);
 		sample->lastGravity = step.gravity;
+		for (std::size_t i = 0; i < platens.size(); i++)
+			platens[i]->finish(*scene, sample->system->platens[i]);
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
 	show();
 	syncs = scene->forces.syncCount;
+}
+
+std::vector<ServoPlaten*> DeformableEngine::preparePlatens()
+{
+	std::vector<ServoPlaten*> mine;
+	auto&                     platens = sample->system->platens;
+	platens.clear();
+	for (ServoPlaten* engine : order.platens) {
+		ddem::RigidPlaten platen;
+		if (engine->dead || !engine->prepare(*scene, *sample, platen)) continue;
+		platens.push_back(platen);
+		mine.push_back(engine);
+	}
+	return mine;
 }
 
 std::unique_lock<std::mutex> DeformableEngine::betweenSteps()

@@ -179,6 +179,8 @@ private:
 	bool                    forcesAdded(bool anythingDone) const;
 	/// To be held while arrays are read or changed from outside of a run.
 	std::unique_lock<std::mutex> betweenSteps();
+	/// Sets the platens of the next step; \returns theirs, in the order of the system's.
+	std::vector<ServoPlaten*> preparePlatens();
 	void                    show();
 	void                    checkStart() const;
 	void                    bookEnergy(const ddem::StepEnergy&);

@@ -144,6 +144,8 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 		}
 	}
 
+	for (RigidPlaten& platen : platens)
+		platen.move(motion, settings, steps);
 	for (auto& g : group)
 		g->endStep();
 	motion.lastTimeStep = settings.dt;
