@@ -5,6 +5,7 @@
 #include <pkg/ddem/kernel/triangles/EdgeTraction.hpp>
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 namespace {
 
@@ -183,6 +184,36 @@ TEST_P(LoadedNodes, dampersLeaveTheStableStepAsItIs)
 		EXPECT_NEAR(first - stored, lost, 2e-5 * first) << "strength " << strength; // round-off, 1e-14/strain
 		EXPECT_LT(stored, 0.5 * first);
 	}
+}
+
+TEST_P(LoadedNodes, giveTheSameBitsForAnyNumberOfThreads)
+{
+	const Mesh            wide = rectangle(60, 50, 0.6, 0.5, 0.25, 9); // three tiles of nodes
+	std::vector<double>   positions[2];
+	double                absorbed[2];
+	const int             before = omp_get_max_threads();
+	for (const int run : { 0, 1 }) {
+		omp_set_num_threads(run ? 2 : 1);
+		TriangleSystem system = makeSystem(wide, Material(), GetParam());
+		agitate(system, 1, 1, 45);
+		std::vector<std::size_t> nodes;
+		for (std::size_t v = 0; v < wide.node.size(); v += 7)
+			nodes.push_back(v);
+		system.motion.loads.assign(nodes);
+		for (auto& load : system.motion.loads) {
+			load.force  = { 1e4, -2e4 };
+			load.damper = { 2e3, 3e3, 1e3 };
+		}
+		const StepSettings settings = stepOf(0.5 * criticalStep(wide, Material(), GetParam()), true);
+		absorbed[run]               = 0;
+		for (int i = 0; i < 5; i++)
+			absorbed[run] += system.step(settings).edgeAbsorption;
+		positions[run].assign(system.motion.node.position.begin(), system.motion.node.position.end());
+	}
+	omp_set_num_threads(before);
+	EXPECT_EQ(positions[0], positions[1]);
+	EXPECT_EQ(absorbed[0], absorbed[1]);
+	EXPECT_GT(absorbed[0], 0);
 }
 
 TEST_P(LoadedNodes, closeTheBookWithEveryEffect)
