@@ -6,6 +6,7 @@
 #include <pkg/ddem/Onlookers.hpp>
 #include <pkg/ddem/SampleArrays.hpp>
 #include <pkg/ddem/SceneReader.hpp>
+#include <pkg/ddem/ServoPlaten.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -19,7 +20,7 @@ CREATE_LOGGER(DeformableEngine);
 
 namespace {
 
-	constexpr int stateVersion = 3; ///< 2: 0.1.0, without names
+	constexpr int stateVersion = 4; ///< 2: 0.1.0, without names; 3: without works of edges
 
 } // namespace
 
@@ -89,13 +90,13 @@ StateStore DeformableEngine::stateToCarry(const Scene& of) const
 	if (sample && virgin) return {}; // State has everything, and the shapes what else there is at the start
 	if (sample) return sample->store();
 	if (savedVersion != 0) {
-		if (savedVersion != stateVersion)
+		if (savedVersion != stateVersion && savedVersion != 3)
 			throw std::runtime_error(
 			        "the scene was saved with version " + std::to_string(savedVersion)
 			        + " of the state of deformable triangles" + (savedVersion == 2 ? " (plugin 0.1.0)" : "")
 			        + "; this plugin reads version " + std::to_string(stateVersion)
 			        + ": load it with the plugin that saved it");
-		return StateStore::fromSaved({ savedFields, savedState });
+		return StateStore::fromSaved({ savedFields, savedState }, savedVersion == 3 ? 3 : 5);
 	}
 	return storeOfFormerEngines(of, trianglesOf(of, settings(of)));
 }
@@ -122,6 +123,7 @@ void DeformableEngine::readIfNeeded(Scene& of)
 	savedFields.clear();
 	savedVersion = 0;
 	stale        = false;
+	edgeLoading.restart();
 	const auto& groups = sample->system->group;
 	guard.restart(std::any_of(
 	        groups.begin(), groups.end(), [](const ddem::GroupPointer& g) { return g->stiffensInRuns(); }));
@@ -219,7 +221,11 @@ void DeformableEngine::action()
 	const std::lock_guard<std::mutex> lock(acting);
 	if (sample) sample->endLook();
 	// before anything is read from bodies that an engine in the wrong place may have spoilt
-	if (order.check(*scene, *this)) EngineOrder::checkDrivenNodes(*scene);
+	if (order.check(*scene, *this)) {
+		EngineOrder::checkDrivenNodes(*scene);
+		for (ServoPlaten* platen : order.platens)
+			platen->lookAgain();
+	}
 	readIfNeeded(*scene);
 	const bool anythingDone = sample->shown == Shown::All; // by engines or Python, also to forces
 	if (sample->shown != Shown::Constrained) {
@@ -236,7 +242,9 @@ void DeformableEngine::action()
 	if (!warning.empty()) LOG_WARN(warning);
 	const bool forces = forcesAdded(anythingDone);
 	sample->importForces(scene->forces, forces);
+	if (!order.edgeEngines.empty() || edgeLoading.active()) edgeLoading.apply(*scene, *sample, order.edgeEngines);
 
+	const std::vector<ServoPlaten*> platens = preparePlatens();
 	const Vector3r     felt = order.gravityFelt(*this);
 	ddem::StepSettings step;
 	step.dt       = scene->dt;
@@ -247,11 +255,28 @@ void DeformableEngine::action()
 	try {
 		const ddem::StepEnergy energy = sample->system->step(step);
 		if (step.energy) bookEnergy(energy);
+		sample->lastGravity = step.gravity;
+		for (std::size_t i = 0; i < platens.size(); i++)
+			platens[i]->finish(*scene, sample->system->platens[i]);
 	} catch (const std::domain_error&) {
 		stopAtNotFinite();
 	}
 	show();
 	syncs = scene->forces.syncCount;
+}
+
+std::vector<ServoPlaten*> DeformableEngine::preparePlatens()
+{
+	std::vector<ServoPlaten*> mine;
+	auto&                     platens = sample->system->platens;
+	platens.clear();
+	for (ServoPlaten* engine : order.platens) {
+		ddem::RigidPlaten platen;
+		if (engine->dead || !engine->prepare(*scene, *sample, platen)) continue;
+		platens.push_back(platen);
+		mine.push_back(engine);
+	}
+	return mine;
 }
 
 std::unique_lock<std::mutex> DeformableEngine::betweenSteps()
@@ -334,6 +359,9 @@ void DeformableEngine::bookEnergy(const ddem::StepEnergy& e)
 	book.add(-e.gravityWork, "gravWork", entry.gravityWork, false);
 	book.add(-e.externalWork, "externalWork", entry.externalWork, false);
 	book.add(e.dampingLoss, "nonviscDamp", entry.dampingLoss, false);
+	if (e.edgeWork != 0 || entry.edgeWork >= 0) book.add(-e.edgeWork, "edgeWork", entry.edgeWork, false);
+	if (e.edgeAbsorption != 0 || entry.edgeAbsorption >= 0)
+		book.add(e.edgeAbsorption, "edgeAbsorption", entry.edgeAbsorption, false);
 }
 
 // ---- saving ---------------------------------------------------------------------------------------------------------

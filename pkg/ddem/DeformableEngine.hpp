@@ -2,6 +2,7 @@
 // The engine that computes and moves deformable triangles of a scene.
 #pragma once
 
+#include <pkg/ddem/EdgeLoading.hpp>
 #include <pkg/ddem/EngineOrder.hpp>
 #include <pkg/ddem/Exposure.hpp>
 #include <pkg/ddem/Onlookers.hpp>
@@ -133,7 +134,8 @@ public:
 		.def("values",&DeformableEngine::values,(boost::python::arg("name")),
 			"Numpy array, computed now, of a quantity of the whole sample.\n\n"
 			"nodeIds (nodes,), triangleIds (triangles,): body ids; vertices (triangles, 3): row numbers of "
-			"the nodes; area, rotation (triangles,) [m², rad]; stress, strain (triangles, 3, 4): xx, yy, "
+			"the nodes; reaction (nodes, 2) [N]: what held them in the last step, zero where they are "
+			"free; area, rotation (triangles,) [m², rad]; stress, strain (triangles, 3, 4): xx, yy, "
 			"zz, xy of the sub-elements in global axes [Pa, -], at the current positions; damage "
 			"(triangles, 3) [-]: η/η_max; fractureEnergy (triangles,) [J/m³]; tilePlace (triangles,): "
 			"place in the tiles, by which sums are taken. Any field that a law remembers, by its name "
@@ -154,6 +156,7 @@ private:
 	std::mutex                            acting; ///< held during a step
 	EngineOrder                           order;
 	TimeStepGuard                         guard;
+	EdgeLoading                           edgeLoading;
 	bool                                  stale   = true; ///< settings changed since the arrays were built
 	bool                                  virgin  = false; ///< the arrays were built from State alone,
 	                                                       ///< and no step was made
@@ -163,7 +166,7 @@ private:
 	/// Places in O.energy, by the names of ddem::StepEnergy.
 	struct {
 		int kinetic = -1, elastic = -1, rotation = -1, plastic = -1, damage = -1, gravityWork = -1,
-		    externalWork = -1, dampingLoss = -1;
+		    externalWork = -1, dampingLoss = -1, edgeWork = -1, edgeAbsorption = -1;
 	} entry;
 
 	ddem::RotationTreatment rotationTreatment() const;
@@ -176,6 +179,8 @@ private:
 	bool                    forcesAdded(bool anythingDone) const;
 	/// To be held while arrays are read or changed from outside of a run.
 	std::unique_lock<std::mutex> betweenSteps();
+	/// Sets the platens of the next step; \returns theirs, in the order of the system's.
+	std::vector<ServoPlaten*> preparePlatens();
 	void                    show();
 	void                    checkStart() const;
 	void                    bookEnergy(const ddem::StepEnergy&);

@@ -25,14 +25,16 @@ public:
 	struct Values {
 		Real     thickness, fractureEnergy, bandFactor;
 		Matrix3r initialDamage;
+		std::vector<Matrix3r> initialStress;
 
 		bool operator==(const Values& o) const
 		{
 			return thickness == o.thickness && fractureEnergy == o.fractureEnergy
-			        && bandFactor == o.bandFactor && initialDamage == o.initialDamage;
+			        && bandFactor == o.bandFactor && initialDamage == o.initialDamage
+			        && initialStress == o.initialStress;
 		}
 	};
-	Values values() const { return { thickness, fractureEnergy, bandFactor, initialDamage }; }
+	Values values() const { return { thickness, fractureEnergy, bandFactor, initialDamage, initialStress }; }
 	/// Counts what was said by all triangles, so that an engine need not ask each.
 	static std::atomic<unsigned long> changes;
 	void                              postLoad(DeformableTriangle&) { changes++; }
@@ -64,7 +66,12 @@ public:
 			"0.5), from the crack band: ddem.append(crack_band=)."))
 		((Matrix3r,initialDamage,Matrix3r::Zero(),Attr::triggerPostLoad,
 			"Pre-existing damage tensor :math:`\\Omega_0` [-] of its sub-elements, symmetric, in the "
-			"reference axes; components xz and yz must be zero.")),
+			"reference axes; components xz and yz must be zero."))
+		((vector<Matrix3r>,initialStress,,Attr::triggerPostLoad,
+			"Stress [Pa] that it has where it is not strained, in the reference axes, tension positive: "
+			"none, one for the triangle, or one for each sub-element (centre, vertex k, vertex k+1), taken "
+			"at its centroid. Its law takes it for its own (``ddem.append(initial_stress=)``); components "
+			"xz and yz must be zero.")),
 		createIndex();,
 		.add_property("stress",&DeformableTriangle::stress,
 			"Stress [Pa] of the three sub-elements, list of Matrix3.")

@@ -4,6 +4,8 @@
 #include <pkg/ddem/DeformableEngine.hpp>
 #include <pkg/ddem/DeformableNode.hpp>
 #include <pkg/ddem/DeformableTimeStepper.hpp>
+#include <pkg/ddem/EdgeEngine.hpp>
+#include <pkg/ddem/ServoPlaten.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
 #include <core/TimeStepper.hpp>
@@ -28,7 +30,8 @@ namespace {
 			                                   "GlobalStiffnessTimeStepper",
 			                                   "DeformableTimeStepper",
 			                                   "DeformableEngine" };
-		return names.count(engine.getClassName()) > 0;
+		return names.count(engine.getClassName()) > 0 || dynamic_cast<const EdgeEngine*>(&engine)
+		        || dynamic_cast<const ServoPlaten*>(&engine);
 	}
 
 	/// Engines that add forces to the bodies that they name, in every step.
@@ -147,9 +150,13 @@ bool EngineOrder::check(const Scene& scene, const DeformableEngine& self)
 		                         "DeformableTimeStepper.largest to the step that they need");
 	collectForces = false;
 	integrators.clear();
+	edgeEngines.clear();
+	platens.clear();
 	for (std::size_t i = 0; i < now.size(); i++) {
 		const bool between = long(i) > resetter && long(i) < mine;
 		if (between && !isQuiet(*now[i]) && !dynamic_cast<const KinematicEngine*>(now[i])) collectForces = true;
+		if (const auto* edges = dynamic_cast<const EdgeEngine*>(now[i])) edgeEngines.push_back(edges);
+		if (auto* platen = dynamic_cast<ServoPlaten*>(scene.engines[i].get())) platens.push_back(platen);
 		if (const auto* newton = dynamic_cast<const NewtonIntegrator*>(now[i])) {
 			integrators.push_back(newton);
 			if (long(i) < mine && (newton->mask <= 0 || (newton->mask & self.groupMask)))

@@ -11,6 +11,8 @@ namespace yade {
 
 class DeformableEngine;
 class DeformableTimeStepper;
+class EdgeEngine;
+class ServoPlaten;
 
 /// What stands in O.engines, checked once and again when it has changed.
 class EngineOrder {
@@ -28,6 +30,8 @@ public:
 	/// whether an engine before may add forces to bodies
 	bool                                 collectForces = false;
 	std::vector<const NewtonIntegrator*> integrators;
+	std::vector<const EdgeEngine*>       edgeEngines;
+	std::vector<ServoPlaten*>            platens;
 
 	/** Acceleration that triangles feel [m/s²]: the engine's, or NewtonIntegrator's where the engine has none.
 	 * \throws std::runtime_error where the two differ, and where NewtonIntegrator damps and the engine does

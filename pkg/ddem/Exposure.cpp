@@ -49,7 +49,8 @@ StateStore storeOf(const ddem::TriangleSystem& s, const SampleIds& ids)
 	StateStore               carried;
 	const ddem::Motion::Book book = s.motion.book();
 	carried.lastTimeStep          = s.motion.lastTimeStep;
-	carried.pendingWork           = { book.gravityWork, book.externalWork, book.dampingLoss };
+	carried.pendingWork           = { book.gravityWork, book.externalWork, book.dampingLoss,
+		                          book.edgeWork, book.edgeAbsorption };
 	carried.flowClock             = s.group.front()->flowClock; // all groups take the same steps
 	const auto point = [](StateStore::Point& to, const ddem::Points& from, const std::vector<double>& last,
 	                      unsigned blocked, std::size_t i) {
@@ -162,6 +163,11 @@ bool Exposure::materialsChanged(bool started)
 			        + ": DeformableTriangle.initialDamage is the damage [-] at the start, and the run has "
 			          "begun; give it before the first step (a material with less strength weakens "
 			          "a triangle during a run)");
+		if (started && now.initialStress != shapeValues[i].initialStress)
+			throw std::invalid_argument(
+			        placeOf(*cores[i])
+			        + ": DeformableTriangle.initialStress is the stress [Pa] at the start, and the run has "
+			          "begun; give it before the first step");
 	}
 	if (!changed) shapeChanges = DeformableTriangle::changes;
 	return changed;
@@ -443,6 +449,12 @@ std::array<ddem::PlaneTensor, 3> Exposure::stress(std::size_t row) const
 	// before the first step there is none whose length could be taken
 	const Real last = system->motion.lastTimeStep, next = Omega::instance().getScene()->dt;
 	return system->stress(row, last > 0 ? last : next > 0 && std::isfinite(next) ? next : 1e-8);
+}
+
+std::ptrdiff_t Exposure::rowOfNode(Body::id_t id) const
+{
+	const auto found = std::lower_bound(nodeId.begin(), nodeId.end(), id); // read in the order of ids
+	return found != nodeId.end() && *found == id ? found - nodeId.begin() : -1;
 }
 
 Real Exposure::fractureEnergy(std::size_t row) const

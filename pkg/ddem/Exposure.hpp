@@ -50,6 +50,8 @@ public:
 	shared_ptr<ddem::TriangleSystem> system;
 	std::vector<shared_ptr<Body>>    nodes, cores; ///< by row
 	Shown                            shown = Shown::All;
+	/// gravity in the last step [m/s²]; not finite before the first with these arrays
+	ddem::PlaneVector<double>        lastGravity { NaN, NaN };
 	std::set<std::string>            forgotten;      ///< fields of the state before that no law here has
 
 	/// The state of all bodies, to be carried into other arrays.
@@ -58,7 +60,8 @@ public:
 	/// Whether the scene has other deformable bodies than when it was read (cheap unless bodies were added).
 	bool misses(const Scene& scene);
 	/** Whether a material or what a triangle's shape says has been changed since the arrays were built.
-	 * \param started whether steps have been made with them: then initialDamage can be changed no more
+	 * \param started whether steps have been made with them: then initialDamage and
+	 * initialStress can be changed no more
 	 * \throws std::invalid_argument if it was */
 	bool materialsChanged(bool started);
 
@@ -99,6 +102,8 @@ public:
 	}
 	/// Stress of the sub-elements at the current positions, in the element's frame [Pa].
 	std::array<ddem::PlaneTensor, 3> stress(std::size_t row) const;
+	/// Row of a node by its body id, -1 if it is none of these.
+	std::ptrdiff_t rowOfNode(Body::id_t id) const;
 	/// Fracture energy that a triangle's law has for it, in the law's unit;
 	/// that of its shape where the law has none.
 	Real fractureEnergy(std::size_t row) const;

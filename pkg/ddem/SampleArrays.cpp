@@ -131,6 +131,28 @@ namespace {
 		});
 	}
 
+	/// What holds the nodes: against all other forces of the last step, zero where they are free [N].
+	np::ndarray reactions(const ddem::Motion& m, const ddem::PlaneVector<double>& gravity)
+	{
+		const ddem::Points& node = m.node;
+		std::vector<double> held(2 * node.size(), 0.);
+		const double        g[2] = { gravity.x, gravity.y };
+		for (std::size_t i = 0; i < held.size(); i++)
+			if (node.inverseMass[i] == 0)
+				held[i] = -(node.force[i] + node.mass[i / 2] * g[i % 2]
+				            + (node.external.empty() ? 0. : node.external[i]));
+		for (const ddem::NodeLoad& load : m.loads) {
+			const double felt[2] = { load.force.x + load.resistance.x, load.force.y + load.resistance.y };
+			for (std::size_t c = 0; c < 2; c++)
+				if (const std::size_t i = 2 * load.node + c; node.inverseMass[i] == 0)
+					held[i] -= felt[c];
+		}
+		return filled<double>({ node.size(), 2 }, 2, [&](std::size_t i, double* to) {
+			to[0] = held[2 * i];
+			to[1] = held[2 * i + 1];
+		});
+	}
+
 } // namespace
 
 boost::python::object sampleValues(const Exposure& sample, const std::string& name)
@@ -148,6 +170,12 @@ boost::python::object sampleValues(const Exposure& sample, const std::string& na
 			for (std::size_t e = 0; e < 3; e++)
 				to[e] = s.topology.vertex[e][i];
 		});
+	if (name == "reaction") {
+		if (!std::isfinite(sample.lastGravity.x))
+			throw std::runtime_error("DeformableEngine.values('reaction'): reactions are those of the last "
+			                         "step, and none was made since the scene was read; make one");
+		return reactions(s.motion, sample.lastGravity);
+	}
 	if (name == "tilePlace") {
 		std::size_t tiles = 0; // of the groups before
 		std::size_t known = 0;
@@ -179,8 +207,8 @@ boost::python::object sampleValues(const Exposure& sample, const std::string& na
 	if (name == "plasticStrain" || name == "damageTensor") return fieldValues(s, name, true);
 	throw std::invalid_argument(
 	        "DeformableEngine.values('" + name
-	        + "') is unknown; there are nodeIds, triangleIds, vertices, tilePlace, area, rotation, fractureEnergy, "
-	          "damage, stress, strain, plasticStrain, damageTensor and the fields of these laws"
+	        + "') is unknown; there are nodeIds, triangleIds, vertices, reaction, tilePlace, area, rotation, "
+	          "fractureEnergy, damage, stress, strain, plasticStrain, damageTensor and the fields of these laws"
 	        + names);
 }
 

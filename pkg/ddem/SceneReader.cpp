@@ -53,7 +53,40 @@ namespace {
 		return { m(0, 0), m(1, 1), m(2, 2), m(0, 1) };
 	}
 
-	ddem::TriangleProperties propertiesOf(const Body& b, double area)
+	/** Stress of the sub-elements that is in equilibrium with the weight of nodes and core, where the given one is
+	 * linear in space and in equilibrium with a weight of the volume.
+	 *
+	 * Sub-elements k of stress σ_k push the core with h Σ σ_k n_k L_k/2. With stress as it is at centre + s (middle
+	 * of edge − centre) this is s/2 of the volume's weight, and the core has 1 − α of it: s = 2 (1 − α). Nodes are
+	 * then in equilibrium as well, since forces do the right work for every linear displacement. The
+	 * given stresses are those of the centroids, s = 2/3. */
+	std::array<ddem::PlaneTensor, 3> initialStress(const Body& b, Real vertexShare)
+	{
+		const auto&                      given = triangleOf(b).initialStress;
+		std::array<ddem::PlaneTensor, 3> stress {};
+		if (given.empty()) return stress;
+		if (given.size() != 1 && given.size() != 3)
+			reject(b,
+			       "initialStress has " + std::to_string(given.size())
+			               + " tensors; give one [Pa] for the triangle, one for each of the three "
+			                 "sub-elements, or none");
+		for (std::size_t k = 0; k < 3; k++) {
+			const Matrix3r& m = given[given.size() == 1 ? 0 : k];
+			if (!m.allFinite() || m(0, 2) != 0 || m(1, 2) != 0 || m(2, 0) != 0 || m(2, 1) != 0
+			    || m(0, 1) != m(1, 0))
+				reject(b,
+				       "initialStress must be finite symmetric tensors [Pa] with zero xz and yz "
+				       "components");
+			stress[k] = { m(0, 0), m(1, 1), m(2, 2), m(0, 1) };
+		}
+		if (given.size() == 1) return stress;
+		const ddem::PlaneTensor mean = (1. / 3) * (stress[0] + stress[1] + stress[2]);
+		for (ddem::PlaneTensor& s : stress)
+			s = mean + (3 * (1 - vertexShare)) * (s - mean);
+		return stress;
+	}
+
+	ddem::TriangleProperties propertiesOf(const Body& b, double area, Real vertexShare)
 	{
 		const DeformableTriangle& shape = triangleOf(b);
 		const Real                own   = shape.fractureEnergy;
@@ -66,7 +99,9 @@ namespace {
 			reject(b,
 			       "bandFactor = " + std::to_string(shape.bandFactor)
 			               + " must be positive (1: no crack band)");
-		return { area, own, shape.bandFactor, initialDamage(b) };
+		ddem::TriangleProperties properties { area, own, shape.bandFactor, initialDamage(b) };
+		properties.initialStress = initialStress(b, vertexShare);
+		return properties;
 	}
 
 	/// Starts a point from what is known of it, else from State; returns its blocked degrees of freedom.
@@ -252,7 +287,7 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 			if (!last || last->material != b.material) made->materials.emplace_back(b.material, law.values);
 		}
 		made->coreMaterial.push_back(made->materials.size() - 1);
-		properties.back().push_back(propertiesOf(b, area));
+		properties.back().push_back(propertiesOf(b, area, settings.vertexShare));
 		s.group.back()->end = i + 1;
 		last                = &b;
 	}
@@ -313,6 +348,8 @@ shared_ptr<Exposure> readScene(const Scene& scene, const SampleSettings& setting
 	book.gravityWork        = known.pendingWork[0];
 	book.externalWork       = known.pendingWork[1];
 	book.dampingLoss        = known.pendingWork[2];
+	book.edgeWork           = known.pendingWork[3];
+	book.edgeAbsorption     = known.pendingWork[4];
 	const auto lastVelocity = [](std::vector<double>& to, std::size_t i, const StateStore::Point& from) {
 		std::copy(from.lastVelocity.begin(), from.lastVelocity.end(), &to[2 * i]);
 	};

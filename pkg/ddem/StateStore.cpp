@@ -152,8 +152,9 @@ StateStore::Saved StateStore::saved() const
 		to.names.push_back(line.str());
 	}
 	std::vector<Real>& all = to.numbers;
-	all = { Real(nodes.size()), Real(cores.size()), pendingWork[0],        pendingWork[1],
-		pendingWork[2],     lastTimeStep,       Real(flowClock.steps), flowClock.time };
+	all = { Real(nodes.size()), Real(cores.size()) };
+	all.insert(all.end(), pendingWork.begin(), pendingWork.end());
+	all.insert(all.end(), { lastTimeStep, Real(flowClock.steps), flowClock.time });
 	for (const auto& [id, point] : nodes)
 		writePoint(all, id, point);
 	for (const auto& [id, core] : cores) {
@@ -167,7 +168,7 @@ StateStore::Saved StateStore::saved() const
 	return to;
 }
 
-StateStore StateStore::fromSaved(const Saved& saved)
+StateStore StateStore::fromSaved(const Saved& saved, std::size_t works)
 {
 	StateStore store;
 	for (const std::string& line : saved.names) {
@@ -185,8 +186,8 @@ StateStore StateStore::fromSaved(const Saved& saved)
 	}
 	NumberReader from(saved.numbers);
 	const auto   nNodes = from.count(), nCores = from.count();
-	for (auto& work : store.pendingWork)
-		work = from.next();
+	for (std::size_t i = 0; i < works; i++)
+		store.pendingWork[i] = from.next();
 	store.lastTimeStep    = from.next();
 	store.flowClock.steps = unsigned(from.next());
 	store.flowClock.time  = from.next();

@@ -31,7 +31,8 @@ public:
 	};
 	std::map<Body::id_t, Point> nodes;
 	std::map<Body::id_t, Core>  cores;
-	std::array<Real, 3>         pendingWork {};   ///< of the energy book [J]: gravity, external, damping
+	std::array<Real, 5>         pendingWork {};   ///< of the energy book [J]: gravity, external, damping, edges'
+	                                              ///< work and absorption
 	Real                        lastTimeStep = 0; ///< [s]
 	ddem::LawGroup::FlowClock   flowClock;        ///< of all groups
 
@@ -56,8 +57,9 @@ public:
 		std::vector<Real>        numbers;
 	};
 	Saved saved() const;
+	/// \param works how many works the file has of pendingWork, the first ones.
 	/// \throws std::runtime_error if they cannot be such a state.
-	static StateStore fromSaved(const Saved& saved);
+	static StateStore fromSaved(const Saved& saved, std::size_t works);
 
 private:
 	/// What a law's fields are called, in order, with all their numbers of a sub-element.

@@ -36,7 +36,10 @@ from ._lazy import lazy
 # that it does not call for.
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
-	"Platens": "loading", "run": "loading", "relax": "relaxation", "out_of_balance": "relaxation",
+	"Platens": "loading", "run": "loading", "servo": "loading", "ServoPlatens": "loading", "pressure": "edge_loads",
+	"absorb": "edge_loads",
+	"initial_stress": None, "relax": "relaxation",
+	"out_of_balance": "relaxation",
 	"EnergyBalance": "energy", "StepMeter": "meter", "estimate": "accuracy.estimate",
 	"effects": "effect_table",
 	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,

@@ -8,13 +8,16 @@ import numpy as np
 
 from yade import Body, DeformableElastMat, DeformableEngine, DeformableNode, DeformableTriangle, O, Vector3, Vector3i
 
-from . import crackband, mesh, meter, provenance
+from . import crackband, initial_stress as initial_stresses, mesh, meter, provenance
 from .arrays import BodyIds, fixed
 from .field import Field
 
 
 @meter.makes_particles
-def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None):
+def append(
+	mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, position=(0, 0, 0), crack_band=None,
+	initial_stress=None
+):
 	"""Append the mesh to the scene as nodes and deformable triangles.
 
 	:param mesh: a :class:`mesh.Mesh`; it is checked and renumbered for memory locality first
@@ -30,10 +33,15 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	:param crack_band: width [m] of a triangle for which its fracture energy per volume holds; once flow has
 		localised, others get as much more or less as makes the energy of a crack per area the same (see
 		:mod:`crackband`, with its limits). None: the fracture energy is per volume, as in the report.
+	:param initial_stress: stress (xx, yy, xy) or (xx, yy, xy, zz) [Pa] where the block is not strained, tension
+		positive, or a function that turns arrays x, y [m] of the mesh's coordinates into these (numbers or
+		arrays). zz is that of plane strain where it is left out. The law takes it for its own
+		(see :mod:`initial_stress`);
+		what it is in equilibrium with is up to the scene.
 	:returns: :class:`Block`
 	:raises ValueError: bad mesh (naming the triangle), region without material, unknown label, material of another
-		kind, thickness, seed, spread, floor, position or crack_band out of range, or a crack_band where
-		no material has a fracture energy. Nothing is appended then.
+		kind, thickness, seed, spread, floor, position, initial_stress or crack_band out of range, or a
+		crack_band where no material has a fracture energy. Nothing is appended then.
 	"""
 	mesh.validate()
 	mesh = mesh.reordered()
@@ -53,6 +61,8 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	if offset.shape != (3, ) or not np.isfinite(offset).all():
 		raise ValueError(f"position = {position} must be three finite numbers [m]")
 
+	stresses = initial_stresses.of_triangles(mesh, by_region, initial_stress)
+
 	nodes = []
 	for x, y in mesh.nodes:
 		nodes.append(_body(DeformableNode(), Vector3(x + offset[0], y + offset[1], offset[2]), "zXYZ"))
@@ -60,12 +70,12 @@ def append(mesh, materials, seed=None, thickness=1.0, spread=0.8, floor=0.2, pos
 	node_ids = [O.bodies.append(node) for node in nodes]
 	triangles = []
 	centres = mesh.nodes[mesh.triangles].mean(axis=1)
-	for triangle, centre, region, energy, band in zip(
-		mesh.triangles.tolist(), centres, mesh.regions, energies, bands.tolist()
+	for triangle, centre, region, energy, band, stress in zip(
+		mesh.triangles.tolist(), centres, mesh.regions, energies, bands.tolist(), stresses
 	):
 		shape = DeformableTriangle(
 			nodes=Vector3i(*(node_ids[v] for v in triangle)), thickness=thickness, fractureEnergy=energy,
-			bandFactor=band
+			bandFactor=band, **({"initialStress": stress} if stress else {})
 		)
 		body = _body(shape, Vector3(centre[0] + offset[0], centre[1] + offset[1], offset[2]), "zXY")
 		body.material = by_region[region]
@@ -263,6 +273,13 @@ class Block:
 		return fixed(engine.array("nodeForce")[self._rows(engine, "node")])
 
 	@property
+	def reactions(self):
+		"""Forces that hold the nodes (n, 2) [N], against all others of the last step: internal ones, loads on
+		edges and nodes, weight; zero in directions in which a node is free.
+		"""
+		return self._of_nodes("reactions", "reaction")
+
+	@property
 	def stress(self):
 		"""Stress of the sub-elements (m, 3, 4): xx, yy, zz, xy in global axes [Pa]."""
 		return self._values("stress", "stress")
@@ -330,12 +347,33 @@ class Block:
 		"""
 		return self.node_ids[self.mesh.boundary(side)]
 
+	def edges(self, side=None):
+		"""Pairs (b, 2) of body ids of the edges of the border whose two nodes both are on a side, as
+		:meth:`boundary` takes it; all when left out. The block lies on the left of the way from the first to
+		the second.
+
+		:raises ValueError: no such side or node, see :meth:`mesh.Mesh.boundary`; no edge joins the nodes.
+		"""
+		edges = self.mesh.border_between(self.mesh.boundary(side))
+		if not len(edges):
+			raise ValueError(
+				f"edges({side!r}): no edge of the border joins two of the nodes there; name whole edges"
+			)
+		return self.node_ids[edges]
+
 	def hold(self, ids, dofs="xy"):
 		"""Hold the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity then
 		stays as prescribed (0 unless set)."""
 		for i in np.atleast_1d(BodyIds(ids)):
 			state = O.bodies[i].state
 			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) | set(dofs)))
+
+	def release(self, ids, dofs="xy"):
+		"""Let go of the nodes with these body ids in the directions *dofs* ("x", "y" or "xy"); their velocity
+		stays what it is."""
+		for i in np.atleast_1d(BodyIds(ids)):
+			state = O.bodies[i].state
+			state.blockedDOFs = "".join(sorted(set(state.blockedDOFs) - set(dofs)))
 
 	def drive(self, ids, velocity):
 		"""Prescribe the velocity (vx, vy) [m/s] of these nodes, None leaves a direction free;
@@ -381,6 +419,11 @@ class Block:
 		engine = self._engine(name)
 		rows = self._rows(engine, "core")
 		return Field(engine.values(value)[rows], engine.values("tilePlace")[rows])
+
+	def _of_nodes(self, name, value):
+		"""What the engine computes of the nodes; the name is that of the block's property."""
+		engine = self._engine(name)
+		return fixed(engine.values(value)[self._rows(engine, "node")])
 
 	def _engine_if_any(self):
 		"""The engine of these triangles, None where O.engines has none."""

@@ -33,7 +33,7 @@ _BOOK = {"strain", "lastStrain", "lastStress", "plasticDissipation", "damageDiss
 _QUIET = {
 	"ForceResetter", "NewtonIntegrator", "BondedNewtonIntegrator", "InsertionSortCollider", "InteractionLoop",
 	"BondedInteractionLoop", "ViscousBodyDamping", "GlobalStiffnessTimeStepper", "DeformableTimeStepper",
-	"DeformableEngine"
+	"DeformableEngine", "EdgeTraction", "AbsorbingEdge", "ServoPlaten"
 }
 
 

@@ -6,9 +6,9 @@ from yade import (
 )
 
 #: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
-EXTERNAL = ("externalWork", "gravWork")
+EXTERNAL = ("externalWork", "gravWork", "edgeWork")
 #: entries that a sound model cannot make negative: a law that creates energy borrows it there, without the total moving
-NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "nonviscDamp")
+NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "nonviscDamp", "edgeAbsorption")
 
 
 class EnergyBalance:
@@ -93,6 +93,7 @@ def _at_rest():
 		state = body.state
 		if isinstance(body.shape, (DeformableNode, DeformableTriangle)) and (
 			state.pos != state.refPos or state.ori != Quaternion.Identity
+			or getattr(body.shape, "initialStress", None)
 		):
 			return False
 		if state.vel == still and state.angVel == still:

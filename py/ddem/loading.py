@@ -7,10 +7,11 @@ import time
 
 import numpy as np
 
-from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngine
+from yade import DeformableEngine, DeformableTriangle, O, RampedTranslationEngine, ServoPlaten
 
 from . import meter
 from .block import Block
+from .edge_loads import absorb, pressure
 
 
 def platens(block, velocity, ramp=0.0, lateral="fixed", both=False, top="top", bottom="bottom"):
@@ -144,6 +145,80 @@ class Platens:
 		"""
 		moved = self.sample.displacements
 		return float(moved[self._rows["bottom"], 1].mean() - moved[self._rows["top"], 1].mean()) / self.height
+
+
+def servo(block, legs, velocity, lateral="free", failure=0.0, top="top", bottom="bottom"):
+	"""A platen that loads a block by stresses and strains; the bottom stands still::
+
+		press = ddem.servo(block, [("stress", 20e6, 1e-3), ("stress", 2e6, 1e-3), ("strain", 4e-3, 2e-3)],
+		velocity=0.5) O.engines = [ForceResetter(), *press.engines, DeformableEngine()]
+
+	:param block: :class:`Block` from :func:`block.append`
+	:param legs: each ("stress", target [Pa], duration [s]) or ("strain", target [-], duration [s]), compression
+		positive; strain counts from the start, of the distance between both ends. A leg goes from what it finds
+		to its target and begins and ends without a jolt.
+	:param velocity: largest speed in legs to a stress [m/s].
+	:param lateral: "free" lets the end nodes slide (smooth platens), "fixed" holds them (rough platens).
+	:param failure: share of the stress asked for below which a platen that runs at its largest speed stops for
+		good, ``press.failed``; 0: never.
+	:param top, bottom: as for :func:`platens`.
+	:returns: :class:`ServoPlatens`; put its ``engines`` into O.engines.
+	:raises ValueError: legs that are none, lateral, velocity or failure out of range; ends as for :func:`platens`.
+		Nothing is held then.
+	"""
+	if lateral not in ("fixed", "free"):
+		raise ValueError(
+			f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)"
+		)
+	legs = [tuple(leg) for leg in legs]
+	for leg in legs:
+		if len(leg) != 3 or leg[0] not in ("stress", "strain"):
+			raise ValueError(
+				f"servo: the leg {leg} must be ('stress', target [Pa], duration [s]) or ('strain', "
+				"target [-], duration [s])"
+			)
+	if not legs:
+		raise ValueError("servo: legs is empty; give at least one, such as ('stress', 10e6, 1e-3)")
+	return ServoPlatens(block, legs, velocity, lateral, failure, top, bottom)
+
+
+class ServoPlatens(Platens):
+	"""Platens of which the top one follows a table of stresses and strains; see :func:`servo`."""
+
+	def __init__(self, block, legs, velocity, lateral, failure, top="top", bottom="bottom"):
+		mesh = block.mesh
+		self._measure(block, {"top": mesh.boundary(top), "bottom": mesh.boundary(bottom)})
+		kinds = ["force" if kind == "stress" else "displacement" for kind, _, _ in legs]
+		scale = {"stress": self.area, "strain": self.height}
+		self.platen = ServoPlaten(  # refuses what is out of range, before anything is held
+			ids=[int(i) for i in self.top], direction=(0, -1, 0), kinds=kinds,
+			targets=[target * scale[kind] for kind, target, _ in legs], durations=[d for _, _, d in legs],
+			velocity=velocity, failure=failure, dashpot=self._impedance() * self.area
+		)
+		dofs = "xy" if lateral == "fixed" else "y"
+		for ids in (self.top, self.bottom):
+			block.hold(ids, dofs)
+		self.engines = [self.platen]
+
+	def _impedance(self):
+		"""Mean ρ c_p [Pa·s/m] of the triangles at the top, so that their waves do not come
+		back from the platen."""
+		held = np.isin(self.sample.mesh.triangles, self._rows["top"]).any(axis=1)
+		values = []
+		for i in self.sample.triangle_ids[held]:
+			material = O.bodies[i].material
+			values.append(math.sqrt(material.density * (material.bulk + 4 / 3 * material.shear)))
+		return float(np.mean(values))
+
+	@property
+	def failed(self):
+		"""Whether the sample has given way, and the platen stands still."""
+		return self.platen.failed
+
+	@property
+	def done(self):
+		"""Whether all legs are done."""
+		return self.platen.done
 
 
 def _loaded_width(mesh, name, rows):

@@ -1,5 +1,7 @@
 # GPL v2 or later, see LICENSE.
 """What YADE users usually write either acts on triangles or stops with the value, the place and the way out."""
+import re
+
 import numpy as np
 import pytest
 
@@ -183,13 +185,37 @@ def test_a_scene_of_0_1_0_is_a_clear_error(tmp_path):
 	path = tmp_path / "scene.xml"
 	O.save(str(path))
 	text = path.read_text()
-	assert "<savedVersion>3</savedVersion>" in text
+	assert "<savedVersion>4</savedVersion>" in text
 	# as 0.1.0 wrote it
-	path.write_text(text.replace("<savedVersion>3</savedVersion>", "<savedVersion>2</savedVersion>"))
+	path.write_text(text.replace("<savedVersion>4</savedVersion>", "<savedVersion>2</savedVersion>"))
 	O.load(str(path))
 	with pytest.raises(RuntimeError, match="version 2 .*0.1.0.*load it with the plugin that saved it"):
 		O.step()
 	assert engine is not None
+
+
+def test_a_scene_that_was_saved_without_works_of_edges_goes_on(tmp_path):
+	"""Version 3 of the state has two numbers less: the works of edges that wait for the energy book."""
+	block = block_of()
+	start()
+	agitate(block, 1)
+	steps(3)
+	path = tmp_path / "scene.xml"
+	O.save(str(path))
+	steps(10)
+	expected = block.positions.copy()
+	text = path.read_text().replace("<savedVersion>4</savedVersion>", "<savedVersion>3</savedVersion>")
+	head, rest = text.split("<savedState>", 1)
+	state, tail = rest.split("</savedState>", 1)
+	items = re.findall(r"<item>.*?</item>", state, re.DOTALL)
+	first = state.index(items[0])
+	kept = items[:5] + items[7:]  # nodes, cores, three works; then two of edges
+	preface = state[:first].replace(f"<count>{len(items)}</count>", f"<count>{len(kept)}</count>")
+	path.write_text(head + "<savedState>" + preface + "\n".join(kept) + "</savedState>" + tail)
+	O.reset()
+	O.load(str(path))
+	steps(10)
+	assert np.array_equal(ddem.Block.from_scene().positions, expected)
 
 
 def test_saved_scenes_carry_names_of_fields(tmp_path):

@@ -84,3 +84,33 @@ def rayleigh_speed(material):
 	ratio = (s / p)**2
 	root = brentq(lambda x: (2 - x)**2 - 4 * np.sqrt((1 - x) * (1 - x * ratio)), 1e-3, 1 - 1e-9, xtol=1e-15)
 	return s * np.sqrt(root)
+
+
+def behind_dashpots(material, angle):
+	"""What a plane compression wave of velocity 1 makes of itself at an edge with dashpots ρ c_p and ρ c_s along
+	and across its normal (Lysmer & Kuhlemeyer 1969), which it meets at this angle to the normal [rad],
+	below 90 degrees.
+
+	The traction of the incident, the reflected compression and the reflected shear wave is that of the dashpots,
+	and their places on the edge go along together (Snell).
+
+	:returns: velocity of the edge along the outward normal and along the edge, towards which the wave goes [-];
+		share of the energy that comes back [-]
+	"""
+	lam, mu = material.bulk - 2 / 3 * material.shear, material.shear
+	fast, slow = speeds(material)
+	shear_angle = np.arcsin(slow / fast * np.sin(angle))
+
+	def wave(direction, polarisation, speed):
+		"""Velocity at the edge, and its traction plus that of the dashpots."""
+		strain = -0.5 / speed * (np.outer(direction, polarisation) + np.outer(polarisation, direction))
+		stress = lam * np.trace(strain) * np.eye(2) + 2 * mu * strain
+		return polarisation, stress[:, 0] + material.density * np.array([fast, slow]) * polarisation
+
+	ways = [np.array([sign * np.cos(angle), np.sin(angle)]) for sign in (1, -1)]
+	shear = np.array([-np.cos(shear_angle), np.sin(shear_angle)])
+	waves = [wave(ways[0], ways[0], fast), wave(ways[1], ways[1], fast), wave(shear, shear[::-1] * [1, -1], slow)]
+	back = np.linalg.solve(np.column_stack([waves[1][1], waves[2][1]]), -waves[0][1])
+	velocity = waves[0][0] + back[0] * waves[1][0] + back[1] * waves[2][0]
+	energy = back[0]**2 + back[1]**2 * slow * np.cos(shear_angle) / (fast * np.cos(angle))
+	return velocity, float(energy)

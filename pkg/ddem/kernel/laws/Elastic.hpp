@@ -47,8 +47,9 @@ struct Elastic : LawDefaults {
 	        const PlaneTensorOf<Number>& stress,
 	        const State<Number>&)
 	{
-		// plane strain: nothing out of the plane
-		return { 0.5 * (stress.xx * strain.xx + stress.yy * strain.yy) + stress.xy * strain.xy,
+		// out of the plane there is initial strain only
+		return { 0.5 * (stress.xx * strain.xx + stress.yy * strain.yy + stress.zz * strain.zz)
+			         + stress.xy * strain.xy,
 			 Number(0.),
 			 Number(0.) };
 	}

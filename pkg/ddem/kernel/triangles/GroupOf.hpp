@@ -6,6 +6,7 @@
 #include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 
 #include <algorithm>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -94,13 +95,19 @@ public:
 	{
 		if (all.size() != triangles()) throw std::logic_error("LawGroup: every triangle needs its properties");
 		columns.resize(triangles(), columnsOf(layout));
+		const bool stressed = std::any_of(all.begin(), all.end(), [](const TriangleProperties& t) {
+			return norm(t.initialStress[0]) + norm(t.initialStress[1]) + norm(t.initialStress[2]) != 0;
+		});
+		initial.resize(stressed ? triangles() : 0, 4);
 		std::vector<std::vector<double>> values(own.size());
 		for (std::size_t i = 0; i < all.size(); i++) {
 			Properties mine {};
-			State      virgin {};
+			std::array<State, 3> first {};
 			try {
-				mine   = Law::propertiesOf(prepared, all[i]);
-				virgin = Law::virgin(prepared, all[i]);
+				mine = Law::propertiesOf(prepared, all[i]);
+				first.fill(Law::virgin(prepared, all[i]));
+				for (std::size_t k = 0; stressed && k < 3; k++)
+					setInitialStrain(i, k, beginAtStress(mine, all[i].initialStress[k], first[k]));
 			} catch (const std::invalid_argument& error) {
 				throw RefusedTriangle(i, error.what());
 			}
@@ -109,9 +116,10 @@ public:
 			for (std::size_t p = 0; p < own.size(); p++)
 				values[p].push_back(list.list[p]);
 			for (std::size_t k = 0; k < 3; k++)
-				store(i, k, virgin);
+				store(i, k, first[k]);
 		}
-		propertyBytes = 0;
+		initial.fillUp();
+		propertyBytes = initial.bytes();
 		for (std::size_t p = 0; p < own.size(); p++) {
 			std::vector<double>& v = values[p];
 			// one value for all takes no room for each
@@ -150,7 +158,7 @@ public:
 			for (std::size_t k = 0; k < 3; k++) {
 				State s = load(i, k);
 				withMask<Law>(layout, [&](auto mask) {
-					Law::template openBook<mask()>(prepared, strain[k], s);
+					Law::template openBook<mask()>(prepared, strain[k] + initialStrain(i, k), s);
 				});
 				store(i, k, s);
 			}
@@ -167,10 +175,13 @@ public:
 		});
 		for (std::size_t k = 0; k < 3; k++) {
 			State s = load(i, k);
-			if (lawNew) withMask<Law>(on, [&](auto mask) { Law::template beginAt<mask()>(strain[k], s); });
+			if (lawNew)
+				withMask<Law>(on, [&](auto mask) {
+					Law::template beginAt<mask()>(strain[k] + initialStrain(i, k), s);
+				});
 			if (book && !missing.empty())
 				withMask<Law>(layout, [&](auto mask) {
-					Law::template openBook<mask()>(prepared, strain[k], s);
+					Law::template openBook<mask()>(prepared, strain[k] + initialStrain(i, k), s);
 				});
 			store(i, k, s);
 		}
@@ -185,7 +196,8 @@ public:
 
 	void advance(std::size_t tile, const ElementArrays& arrays, double dt, StepEnergy& sum) override
 	{
-		TileState<Law> t { &prepared, columns.tile(tile), columns.stride(tile), {}, {}, held };
+		TileState<Law> t { &prepared, columns.tile(tile), columns.stride(tile), {}, {}, held, nullptr };
+		if (initial.triangles()) t.initialStrain = initial.tile(tile);
 		for (std::size_t p = 0; p < own.size(); p++) {
 			t.propertyStep[p] = own[p].step;
 			t.property[p]     = own[p].values.data() + own[p].step * tile * tileSize;
@@ -211,7 +223,8 @@ public:
 				double time = dt;
 				if constexpr (Law::holds(mask()))
 					if (Law::template flowMayWait<mask()>(prepared, s)) time += flowClock.time;
-				result[k] = Law::template advance<mask()>(prepared, mine, strain[k], time, s);
+				result[k] = Law::template advance<mask()>(
+				        prepared, mine, strain[k] + initialStrain(triangle, k), time, s);
 			});
 		}
 		return result;
@@ -255,6 +268,7 @@ private:
 	RotationTreatment                                rotation = RotationTreatment::Cosserat;
 	bool                                             widest   = true;
 	TileLoops<Law>                                   loops;
+	StateColumns      initial;   ///< strain xx, yy, zz, xy of initial stresses; empty where there are none
 	std::vector<char> untouched; ///< tiles that have not left it; empty for laws without threshold
 	std::vector<Property>                            own;
 	std::vector<std::pair<const char*, const char*>> propertyNames;
@@ -265,6 +279,10 @@ private:
 	void stateIsNew() override
 	{
 		if constexpr (!Law::hasThreshold(Law::allEffects)) return;
+		if (initial.triangles()) { // thresholds are those of strain from nothing
+			untouched.assign(tiles(), false);
+			return;
+		}
 		State               virgin = Law::virgin(prepared, TriangleProperties());
 		std::vector<double> number(columnsOf(on)); // without what only the book has, which comes last
 		withMask<Law>(on, [&](auto mask) {
@@ -276,6 +294,62 @@ private:
 				for (std::size_t c = 0; c < number.size(); c++)
 					if (!(columns.row(i, k)[c * columns.columnStep(i)] == number[c]))
 						untouched[i / tileSize] = false;
+	}
+
+	PlaneTensor initialStrain(std::size_t triangle, std::size_t k) const
+	{
+		if (!initial.triangles()) return {};
+		const double*     first = initial.row(triangle, k);
+		const std::size_t step  = initial.columnStep(triangle);
+		return { first[0], first[step], first[2 * step], first[3 * step] };
+	}
+	void setInitialStrain(std::size_t triangle, std::size_t k, const PlaneTensor& strain)
+	{
+		double* const     first = initial.row(triangle, k);
+		const std::size_t step  = initial.columnStep(triangle);
+		first[0]                = strain.xx;
+		first[step]             = strain.yy;
+		first[2 * step]         = strain.zz;
+		first[3 * step]         = strain.xy;
+	}
+	/// Strain at which a state that begins there has a stress [Pa]; it becomes that state.
+	/// \throws std::invalid_argument if the law does not bear the stress.
+	PlaneTensor beginAtStress(const Properties& mine, const PlaneTensor& wanted, State& state) const
+	{
+		const TriangleStiffness moduli     = stiffness();
+		const auto              compliance = [&](const PlaneTensor& stress) {
+                        const double mean = trace(stress) / 3, all = mean / (3 * moduli.bulk);
+                        const double shear = 1 / (2 * moduli.shear);
+                        return PlaneTensor { shear * (stress.xx - mean) + all, shear * (stress.yy - mean) + all,
+                                             shear * (stress.zz - mean) + all, shear * stress.xy };
+		};
+		constexpr int    mostRounds = 200;
+		constexpr double exact      = 1e-14; // of the stress; a few roundings
+		if (norm(wanted) == 0) return {};
+		PlaneTensor strain = compliance(wanted), reached {};
+		double      best   = norm(wanted);
+		for (int round = 0; round < mostRounds; round++) {
+			State now = state;
+			withMask<Law>(on, [&](auto mask) {
+				Law::template beginAt<mask()>(strain, now);
+				reached = Law::template advance<mask()>(prepared, mine, strain, 1., now);
+			});
+			const PlaneTensor missing = wanted - reached;
+			const double      off     = norm(missing);
+			// as near as rounding lets it come
+			if (off <= exact * norm(wanted) || (off <= 100 * exact * norm(wanted) && off >= best)) {
+				state = now;
+				return strain;
+			}
+			best   = std::min(best, off);
+			strain = strain + compliance(missing);
+		}
+		std::ostringstream text;
+		text << "initialStress (xx, yy, zz, xy) = (" << wanted.xx << ", " << wanted.yy << ", " << wanted.zz
+		     << ", " << wanted.xy << ") Pa is more than its law " << Law::name << " bears, which comes to ("
+		     << reached.xx << ", " << reached.yy << ", " << reached.zz << ", " << reached.xy
+		     << ") Pa; give a smaller stress, or a stronger material";
+		throw std::invalid_argument(text.str());
 	}
 
 	static ListFields fieldsOf(unsigned mask)
@@ -295,7 +369,8 @@ private:
 		State s {};
 		withMask<Law>(layout, [&](auto mask) {
 			Law::template fields<mask()>(
-			        s, LoadFields<double> { columns.row(triangle, k), columns.columnStep(triangle) });
+			        s, LoadFields<double> { columns.row(triangle, k), columns.columnStep(triangle),
+				                     initialStrain(triangle, k).zz });
 		});
 		return s;
 	}

@@ -23,6 +23,7 @@ struct TriangleProperties {
 	double      fractureEnergy = -1; ///< of its own; negative: the material's, in the unit that its law says
 	double      bandFactor     = 1;  ///< of a crack band, on the fracture energy once flow has localised [-]
 	PlaneTensor initialDamage { 0, 0, 0, 0 };
+	std::array<PlaneTensor, 3> initialStress {}; ///< of the sub-elements, where they are not strained [Pa]
 
 	TriangleProperties() = default;
 	TriangleProperties(double area_, double fractureEnergy_, double bandFactor_, const PlaneTensor& initialDamage_)
@@ -159,8 +160,13 @@ public:
 	virtual bool                          stiffensInRuns() const    = 0; ///< whether stiffening() may exceed 1
 
 	// --- state
-	/// Virgin state of so many triangles, from `begin` to `end`.
-	/// \throws std::logic_error unless there is one entry for each; RefusedTriangle for what the law cannot have.
+	/** Virgin state of so many triangles, from `begin` to `end`.
+	 *
+	 * Where they have an initial stress, their law sees strain + ε_0, with ε_0 such that it gives that stress
+	 * at no strain: found by the elastic compliance S, ε_0 ← ε_0 + S:(σ_0 − σ(ε_0)), from a law that begins at
+	 * ε_0. So it works with every law, which takes the stress for its own, and costs nothing elsewhere.
+	 * \throws std::logic_error unless there is one entry for each; RefusedTriangle for what the law cannot
+	 * have, also an initial stress that it does not bear. */
 	virtual void start(const std::vector<TriangleProperties>& triangles) = 0;
 	using StrainOf = std::function<std::array<PlaneTensor, 3>(std::size_t triangle)>;
 	/// Opens the energy book, which begins with the present strains, or leaves it.

@@ -125,12 +125,20 @@ inline PlaneTensorOf<Number> holdOrAdvance(
 		Law::template fields<effects>(
 		        state, StoreSomeFields<Number, decltype(lanes)> { column, stride, lanes });
 		stress = select(lanes, s, stress);
-		if (energy || again) Law::template fields<effects>(state, LoadFields<Number> { column, stride });
+		if (energy || again)
+			Law::template fields<effects>(state, LoadFields<Number> { column, stride, strain.zz });
 		if (!again) return stress;
 		lanes = later;
 		time  = dt;
 		again = false;
 	}
+}
+
+/// Strain of a sub-element's initial stress, whose columns lie `step` numbers apart.
+template <class Number> inline PlaneTensorOf<Number> initialStrain(const double* column, std::size_t step)
+{
+	using L = Lanes<Number>;
+	return { L::load(column), L::load(column + step), L::load(column + 2 * step), L::load(column + 3 * step) };
 }
 
 /** Whole batches: rows of `a` from `begin` on, places in the tile from `lane` on. Of the last batch `real` lanes
@@ -172,13 +180,19 @@ __attribute__((noinline, noclone, flatten)) bool advanceBatches(
 		for (std::size_t k = 0; k < 3; k++) {
 			double* const                        column = tile.columns + k * stride + place;
 			typename Law::template State<Number> state {};
-			const PlaneTensorOf<Number> strain { strains[k].xx, strains[k].yy, Number(0.), strains[k].xy };
+			PlaneTensorOf<Number> strain { strains[k].xx, strains[k].yy, Number(0.), strains[k].xy };
+			if constexpr (!below)
+				if (tile.initialStrain)
+					strain = strain
+					        + initialStrain<Number>(
+					                 tile.initialStrain + k * stride + place, 3 * stride);
 			PlaneTensorOf<Number>       s;
 			if constexpr (below) {
 				s      = elasticStress(law.lambda, law.twoShear, strain);
 				beyond = beyond || Law::template beyondThreshold<effects>(law, own, strain);
 			} else {
-				Law::template fields<effects>(state, LoadFields<Number> { column, 3 * stride });
+				Law::template fields<effects>(
+				        state, LoadFields<Number> { column, 3 * stride, strain.zz });
 				if constexpr (holds)
 					s = holdOrAdvance<Law, effects>(tile, own, strain, bound, dt, column, state);
 				else {

@@ -62,6 +62,8 @@ template <class Law> struct TileState {
 	const double*                 property[mostProperties];     ///< of the tile's first triangle
 	std::size_t                   propertyStep[mostProperties]; ///< 0 where all triangles share one value
 	HeldSteps                     held;
+	const double* initialStrain = nullptr; ///< columns xx, yy, zz, xy as those of the state;
+	                                       ///< null where there is none
 };
 
 /// Advances the triangles [begin, end), rows of the arrays, by dt [s]; fills forces, and the energies where the mask

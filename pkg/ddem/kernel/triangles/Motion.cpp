@@ -50,13 +50,26 @@ namespace {
 	        const ReservedArray<double>& force,
 	        const StepsAround&           dt,
 	        std::vector<MotionSums>&     tiles,
-	        const TileOf&                tileOf)
+	        const TileOf&                tileOf,
+	        const NodeLoads&             loads = NodeLoads())
 	{
+		auto load = loads.begin();
 		for (auto& c : list) {
 			MotionSums& sum = tiles[tileOf(c.index)];
-			sum.before.externalWork -= 0.5 * dt.before * force[c.index] * c.velocity;
+			while (load != loads.end() && load->node < c.index / 2)
+				++load;
+			const bool   loaded = load != loads.end() && load->node == c.index / 2;
+			const double own    = !loaded ? 0. : c.index % 2 ? load->force.y : load->force.x;
+			const double resistance = !loaded ? 0. : c.index % 2 ? load->resistance.y : load->resistance.x;
+			const double reaction   = -(force[c.index] + own + resistance);
+			const auto   book       = [&](StepEnergy& half, double weight) {
+                                half.externalWork += weight * reaction * c.velocity;
+                                half.edgeWork += weight * own * c.velocity;
+                                half.edgeAbsorption -= weight * resistance * c.velocity;
+			};
+			book(sum.before, 0.5 * dt.before);
 			c.velocity = velocity[c.index];
-			sum.after.externalWork -= 0.5 * dt.after * force[c.index] * c.velocity;
+			book(sum.after, 0.5 * dt.after);
 		}
 	}
 
@@ -122,7 +135,7 @@ StepEnergy Motion::closeBook(
 	};
 	const auto tileOfNode = [&](std::size_t i) { return tileStart.size() + i / nodesPerTile; };
 	const auto half = [](const auto& tileOf) { return [&tileOf](std::size_t index) { return tileOf(index / 2); }; };
-	bookReactions(nodeConstraint, node.velocity, node.force, steps, tiles, half(tileOfNode));
+	bookReactions(nodeConstraint, node.velocity, node.force, steps, tiles, half(tileOfNode), loads);
 	bookReactions(coreConstraint, core.velocity, core.force, steps, tiles, half(tileOfTriangle));
 	bookReactions(spinConstraint, spin.velocity, spin.moment, steps, tiles, tileOfTriangle);
 
@@ -134,6 +147,8 @@ StepEnergy Motion::closeBook(
 	energy.gravityWork += pending.gravityWork;
 	energy.externalWork += pending.externalWork;
 	energy.dampingLoss += pending.dampingLoss;
+	energy.edgeWork += pending.edgeWork;
+	energy.edgeAbsorption += pending.edgeAbsorption;
 	pending = sum.after;
 	return energy;
 }
@@ -142,8 +157,9 @@ Motion::Book Motion::book() const
 {
 	const auto list
 	        = [](const ReservedArray<double>& values) { return std::vector<double>(values.begin(), values.end()); };
-	Book       saved { pending.gravityWork,   pending.externalWork, pending.dampingLoss,
-		     list(node.velocity), list(core.velocity),  list(spin.velocity) };
+	Book       saved { pending.gravityWork, pending.externalWork,   pending.dampingLoss,
+		     pending.edgeWork,    pending.edgeAbsorption, list(node.velocity),
+		     list(core.velocity), list(spin.velocity) };
 	for (const auto& c : nodeConstraint)
 		saved.nodeVelocity[c.index] = c.velocity;
 	for (const auto& c : coreConstraint)
@@ -161,6 +177,8 @@ void Motion::setBook(const Book& saved)
 	pending.gravityWork  = saved.gravityWork;
 	pending.externalWork = saved.externalWork;
 	pending.dampingLoss  = saved.dampingLoss;
+	pending.edgeWork       = saved.edgeWork;
+	pending.edgeAbsorption = saved.edgeAbsorption;
 	for (auto& c : nodeConstraint)
 		c.velocity = saved.nodeVelocity[c.index];
 	for (auto& c : coreConstraint)

@@ -4,6 +4,7 @@
 
 #include <pkg/ddem/kernel/algebra/PlaneVector.hpp>
 #include <pkg/ddem/kernel/algebra/ReservedArray.hpp>
+#include <pkg/ddem/kernel/triangles/NodeLoads.hpp>
 #include <pkg/ddem/kernel/triangles/StepEnergy.hpp>
 
 #include <cstddef>
@@ -77,6 +78,8 @@ struct MotionSums {
 class Motion {
 public:
 	Points node, core;
+	/// on nodes, beside the forces from outside; their works are booked apart
+	NodeLoads loads;
 	Spins  spin;             ///< of the cores; empty unless they rotate
 	double lastTimeStep = 0; ///< of the last step [s]; velocities are half of it before the positions.
 	                         ///< 0: equal to the next
@@ -111,7 +114,7 @@ public:
 	/// for every degree of freedom the velocity of the last step, which differs from the present
 	/// one where it is prescribed.
 	struct Book {
-		double              gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< [J]
+		double gravityWork = 0, externalWork = 0, dampingLoss = 0, edgeWork = 0, edgeAbsorption = 0; ///< [J]
 		/// [m/s, rad/s], as Points::velocity and Spins::velocity
 		std::vector<double> nodeVelocity, coreVelocity, spinVelocity;
 	};

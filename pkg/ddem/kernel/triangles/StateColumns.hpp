@@ -62,17 +62,19 @@ private:
 	}
 };
 
-/// Reads a sub-element's columns, which lie `stride` numbers apart; in plane zz is zero.
+/// Reads a sub-element's columns, which lie `stride` numbers apart. Tensors in plane are strains, whose zz does not
+/// change: it is that of the initial strain.
 template <class Number> struct LoadFields {
 	const double* from;
 	std::size_t   stride;
+	Number        outOfPlane = Number(0.);
 
 	void scalar(const char*, const char*, Number& to) { to = next(); }
 	void inPlane(const char*, const char*, PlaneTensorOf<Number>& to)
 	{
 		to.xx = next();
 		to.yy = next();
-		to.zz = Number(0.);
+		to.zz = outOfPlane;
 		to.xy = next();
 	}
 	void tensor(const char*, const char*, PlaneTensorOf<Number>& to)

@@ -10,6 +10,7 @@ namespace yade::ddem {
 struct StepEnergy {
 	double kinetic = 0, elastic = 0, rotation = 0, plastic = 0, damage = 0;
 	double gravityWork = 0, externalWork = 0, dampingLoss = 0; ///< increments since the last step
+	double edgeWork = 0, edgeAbsorption = 0; ///< of loads and dampers on nodes, see NodeLoads; increments, too
 
 	StepEnergy& operator+=(const StepEnergy& other)
 	{
@@ -21,6 +22,8 @@ struct StepEnergy {
 		gravityWork += other.gravityWork;
 		externalWork += other.externalWork;
 		dampingLoss += other.dampingLoss;
+		edgeWork += other.edgeWork;
+		edgeAbsorption += other.edgeAbsorption;
 		return *this;
 	}
 };

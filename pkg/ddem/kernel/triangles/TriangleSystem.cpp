@@ -1,7 +1,7 @@
 // GPL v2 or later, see LICENSE.
 #include <pkg/ddem/kernel/triangles/TriangleSystem.hpp>
 
-#include <pkg/ddem/kernel/triangles/Leapfrog.hpp>
+#include <pkg/ddem/kernel/triangles/LoadedNode.hpp>
 #include <pkg/ddem/kernel/triangles/TileSums.hpp>
 
 #include <algorithm>
@@ -18,14 +18,18 @@ namespace {
 	using MoveSpins
 	        = void (*)(Spins&, std::size_t, std::size_t, const StepSettings&, const StepsAround&, MotionSums&);
 
+	using MoveLoaded = void (*)(Points&, NodeLoad&, const StepSettings&, const StepsAround&, MotionSums&);
+
 	struct Movers {
 		MovePoints points;
 		MoveSpins  spins;
+		MoveLoaded loaded;
 	};
 
 	template <unsigned... effects> Movers selectMovers(unsigned wanted, std::integer_sequence<unsigned, effects...>)
 	{
-		static constexpr Movers table[] = { { movePoints<effects>, moveSpins<effects> }... };
+		static constexpr Movers table[]
+		        = { { movePoints<effects>, moveSpins<effects>, moveLoaded<effects> }... };
 		return table[wanted];
 	}
 
@@ -127,10 +131,21 @@ StepEnergy TriangleSystem::step(const StepSettings& settings)
 				node.force[2 * v]     = x;
 				node.force[2 * v + 1] = y;
 			}
-			move.points(node, begin, end, settings, steps, sums[tiles + std::size_t(j)]);
+			MotionSums& sum  = sums[tiles + std::size_t(j)];
+			std::size_t from = begin; // nodes between loaded ones move together
+			for (std::size_t l = motion.loads.place(begin);
+			     l < motion.loads.size() && motion.loads[l].node < end; l++) {
+				NodeLoad& load = motion.loads[l];
+				if (load.node > from) move.points(node, from, load.node, settings, steps, sum);
+				move.loaded(node, load, settings, steps, sum);
+				from = load.node + 1;
+			}
+			if (from < end) move.points(node, from, end, settings, steps, sum);
 		}
 	}
 
+	for (RigidPlaten& platen : platens)
+		platen.move(motion, settings, steps);
 	for (auto& g : group)
 		g->endStep();
 	motion.lastTimeStep = settings.dt;

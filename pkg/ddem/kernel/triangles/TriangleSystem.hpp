@@ -6,6 +6,7 @@
 #include <pkg/ddem/kernel/triangles/ElementFrame.hpp>
 #include <pkg/ddem/kernel/triangles/LawGroup.hpp>
 #include <pkg/ddem/kernel/triangles/Motion.hpp>
+#include <pkg/ddem/kernel/triangles/RigidPlaten.hpp>
 #include <pkg/ddem/kernel/triangles/Topology.hpp>
 
 #include <array>
@@ -30,6 +31,7 @@ public:
 	Motion                    motion;
 	std::vector<GroupPointer> group; ///< in order of their rows, covering all triangles
 	RotationTreatment         rotation = RotationTreatment::Cosserat;
+	std::vector<RigidPlaten>  platens; ///< that move in the next step
 
 	std::size_t triangles() const { return topology.triangles(); }
 
