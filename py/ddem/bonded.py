@@ -82,11 +82,8 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 			if packing.bonds is not None
 			else packing.neighbours(DEFAULT_GAP * packing.radii.max())
 		)
-	for i, j in pairs:
-		if (packing.centres[i] == packing.centres[j]).all():
-			raise ValueError(
-				f"spheres {i} and {j} of the packing have the same centre and cannot be bonded"
-			)
+	for i, j in pairs[(packing.centres[pairs[:, 0]] == packing.centres[pairs[:, 1]]).all(axis=1)]:
+		raise ValueError(f"spheres {i} and {j} of the packing have the same centre and cannot be bonded")
 	if len(pairs) == 0:
 		raise ValueError(
 			"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the "
@@ -105,7 +102,7 @@ def append(packing, material, gap=None, color=None, mass_law="solid"):
 	ids = BodyIds([O.bodies.append(body) for body in spheres])
 	Ip2_BondedMat_BondedMat_BondedPhys().bond([(i, j) for i, j in ids[pairs]])
 	_warn_of_pieces(packing, pairs)
-	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
+	return BondedSample(ids, packing.lower, packing.upper, len(pairs), packing.shape and packing)
 
 
 def _warn_of_pieces(packing, pairs):
@@ -131,8 +128,9 @@ class BondedSample:
 	The arrays are copies and cannot be written to; velocities and positions are set in the State of the spheres.
 	"""
 
-	def __init__(self, ids, lower, upper, bonds):
+	def __init__(self, ids, lower, upper, bonds, shaped=None):
 		self._appended = BodyIds(ids)
+		self._shaped = shaped
 		#: corners of the box at the start [m]
 		self.lower, self.upper = np.array(lower, float), np.array(upper, float)
 		self.initial_bonds = bonds  #: number of bonds at the start
@@ -157,6 +155,16 @@ class BondedSample:
 
 	def __len__(self):
 		return len(self.ids)
+
+	@property
+	def area(self):
+		"""Area of the face across y at the start [m²], which platens load: that of the packing's shape
+		(:meth:`packing.Packing.area`), or of its box where it has none.
+
+		:raises ValueError: a shape without a flat face there, as a ball
+		"""
+		width, _, depth = self.upper - self.lower
+		return float(width * depth) if self._shaped is None else self._shaped.area(1)
 
 	@property
 	def positions(self):
@@ -291,11 +299,12 @@ def platens(
 		good, and feel its spring in both directions.
 	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract.
 		ESyS-Particle's NRotBondedWall has that of *stiffness*.
-	:param area: of the loaded face [m²], for specimens that do not fill their box: pi/4 D² of a cylinder. None:
-		that of the box.
+	:param area: that stresses refer to [m²]. None: that of the loaded face, :attr:`BondedSample.area`. To be given
+		for packings that neither fill their box nor say their shape, and for those without flat ends.
 	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
 	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not
-		positive, no sphere at a wall that is to be bonded. Nothing is appended then.
+		positive, no sphere at a wall that is to be bonded, no area and a specimen without flat ends. Nothing is
+		appended then.
 	"""
 	if not math.isfinite(velocity) or velocity == 0:
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
@@ -312,6 +321,7 @@ def platens(
 		raise ValueError(
 			f"area = {area} m² must be positive, and not above that of the sample's box, {box:.6g} m²"
 		)
+	area = sample.area if area is None else area
 	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
 	held = []
 	if bonded:
@@ -337,7 +347,7 @@ class Platens:
 	"""Two elastic walls on a bonded sample: what they do and what they feel (report, eqs. 9-11).
 	Compression is positive."""
 
-	def __init__(self, sample, bottom, top, velocity, ramp, both, area=None):
+	def __init__(self, sample, bottom, top, velocity, ramp, both, area):
 		self._measure(sample, bottom, top, sample.upper[1] - sample.lower[1], area)
 		self.engines = [
 			RampedTranslationEngine(ids=[top], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp)
@@ -354,8 +364,8 @@ class Platens:
 		"""The platens on a sample of the current scene, for a scene that was loaded.
 
 		:param sample: as from :meth:`BondedSample.from_scene`
-		:param area: of the loaded face [m²], to be given again where it was given; None: that of the box around
-			the spheres at the start.
+		:param area: of the loaded face [m²], to be given again where it was given, or where the packing said
+			its shape (a scene does not save it); None: that of the box around the spheres at the start.
 		:raises RuntimeError: the scene has not two Walls of ElasticWallMat across y
 		"""
 		walls = [
@@ -380,8 +390,7 @@ class Platens:
 		self.sample = sample
 		self.bottom, self.top = bottom, top  #: body ids of the walls
 		self.height = height  #: distance of the walls at the start [m]
-		width, _, depth = sample.upper - sample.lower
-		self.area = float(width * depth) if area is None else area  #: of the loaded face [m²]
+		self.area = sample.area if area is None else area  #: of the loaded face [m²]
 
 	@property
 	def force_top(self):
