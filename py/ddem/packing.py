@@ -4,7 +4,7 @@
 	packing = ddem.packing.fill(ddem.packing.Cylinder((0, 0, 0), (0, 0.1, 0), 0.025), rmin=1e-3, rmax=3e-3)
 
 :func:`fill` takes any of :mod:`shapes` and a tenth of a millisecond a sphere. :func:`prism` and :func:`layer` are
-boxes of GenGeo's packer, unless told otherwise; the same algorithm, some thirty times slower. Results that are
+boxes of GenGeo's packer, unless told otherwise; the same algorithm, some fifty times slower. Results that are
 documented with a seed are of GenGeo's packings.
 """
 import contextlib
@@ -20,13 +20,7 @@ import sys
 import numpy as np
 
 from . import _packing, provenance
-from .shapes import Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle
-
-__all__ = [
-	"Packing", "of", "fill", "prism", "layer", "read", "UNITS", "GENERATORS", "Box", "Cylinder", "Ball",
-	"Polyhedron",
-	"Rectangle", "Disc", "Polygon"
-]
+from .shapes import Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle  # noqa: F401: packing.Disc
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
 GENERATORS = ("gengeo", "fill")  #: what packs a prism or a layer
