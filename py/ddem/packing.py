@@ -216,7 +216,8 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None, gener
 	:param fails: more give a denser packing, and take longer
 	:param keep: folder, made when missing, from which a packing with the same parameters is taken where it was made
 		before, and where it is kept otherwise
-	:param generator: "gengeo", or "fill" for :func:`fill`: the same algorithm, other packings, much faster
+	:param generator: "gengeo", or "fill" for :func:`fill`: the same algorithm, much faster, with other packings,
+		which touch more of the walls: a prism of them is 4 % stiffer
 	:returns: :class:`Packing`
 	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit, an unknown
 		generator

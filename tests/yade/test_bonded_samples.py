@@ -65,8 +65,7 @@ def test_platens_load_the_face_of_the_shape_that_was_filled():
 	cylinder = packing.Cylinder((0, 0, 0), (0, 0.02, 0), 0.005)
 	sample = bonded.append(packing.fill(cylinder, 1e-3, 2e-3, fails=200), "rock")
 	assert bonded.platens(sample, velocity=0.2).area == pytest.approx(math.pi * 0.005**2)
-	with pytest.warns(UserWarning, match="pieces"):
-		ball = bonded.append(packing.fill(packing.Ball((0, 0, 0), 0.006), 1e-3, 2e-3, fails=50), "rock")
+	ball = bonded.append(packing.fill(packing.Ball((0, 0, 0), 0.006), 1e-3, 2e-3, fails=200), "rock")
 	bodies = len(O.bodies)
 	with pytest.raises(ValueError, match="the ball of radius 0.006 m has no flat face"):
 		bonded.platens(ball, velocity=0.2)

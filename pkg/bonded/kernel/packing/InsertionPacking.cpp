@@ -2,9 +2,13 @@
 #include <pkg/bonded/kernel/packing/InsertionPacking.hpp>
 #include <pkg/bonded/kernel/packing/SphereGrid.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <random>
+#include <utility>
 
 namespace yade::ddem {
 
@@ -57,16 +61,21 @@ namespace {
 			const double              r    = order.largest;
 			const double              rows = std::sqrt(3.) * r, layers = 2 * std::sqrt(2. / 3) * r;
 			const SpaceVector<double> size = specimen.upper - specimen.lower;
-			const int nx = int(std::ceil(size.x / (2 * r))), ny = int(std::ceil(size.y / rows));
-			const int                 nz = dimension == 3 ? int(std::ceil(size.z / layers)) : 0;
-			for (int i = 0; i <= nx; i++)
-				for (int j = 0; j <= ny; j++)
-					for (int k = 0; k <= nz; k++)
+			const auto                steps = [](double way, double step) {
+                                return std::int64_t(std::ceil(way / step));
+			};
+			const std::int64_t nx = steps(size.x, 2 * r), ny = steps(size.y, rows);
+			const std::int64_t nz = dimension == 3 ? steps(size.z, layers) : 0;
+			for (std::int64_t i = 0; i <= nx; i++)
+				for (std::int64_t j = 0; j <= ny; j++) {
+					if (order.tick) order.tick();
+					for (std::int64_t k = 0; k <= nz; k++)
 						seedAt(specimen.lower
 						       + SpaceVector<double> {
-						               r + (2 * i + j % 2 + k % 2) * r,
-						               r + (j + k % 2 / 3.) * rows,
-						               dimension == 3 ? r + k * layers : 0 });
+						               r + double(2 * i + j % 2 + k % 2) * r,
+						               r + (double(j) + double(k % 2) / 3) * rows,
+						               dimension == 3 ? r + double(k) * layers : 0 });
+				}
 		}
 		/// A sphere of random radius near a point, where it finds room there.
 		void seedAt(const SpaceVector<double>& point)
