@@ -119,7 +119,8 @@ def read_packing(options):
 	"""The spheres, and their bonds where a file lists them."""
 	if options.particles is None:
 		return ddem.packing.prism(
-			*options.size, *options.radii, seed=options.seed, fails=options.fails, keep=options.packings
+			*options.size, *options.radii, seed=options.seed, fails=options.fails, keep=options.packings,
+			generator=options.generator
 		)
 	packing = ddem.packing.read(options.particles, options.bonds, options.length_unit)
 	if options.box:
@@ -183,6 +184,15 @@ def read_options():
 	sample.add_argument(
 		"--fails", type=count, default=5000, metavar="N",
 		help="the packing is finished when so many spheres in a row found no place"
+	)
+	sample.add_argument(
+		"--generator",
+		choices=ddem.packing.GENERATORS,
+		default="gengeo",
+		help=(
+			"of the packing: GenGeo, or ddem.packing.fill, which is much faster and makes other packings "
+			"of the same kind"
+		),
 	)
 	sample.add_argument(
 		"--packings",
@@ -398,7 +408,8 @@ def describe(options, packing, sample, critical):
 	if options.particles:
 		origin = f"from {os.path.basename(options.particles)}"
 	else:
-		origin = f"packed by GenGeo, seed {options.seed}, until {options.fails} insertions in a row failed"
+		packer = "GenGeo" if options.generator == "gengeo" else "ddem.packing.fill"
+		origin = f"packed by {packer}, seed {options.seed}, until {options.fails} insertions in a row failed"
 	made = [
 		(
 			"spheres",

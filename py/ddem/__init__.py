@@ -17,8 +17,8 @@ SI units; tension positive. The package is a library and four houses beside it:
 
 ===================  ============================================================================================
 here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialpoint` (one point of the concrete
-                     law), :mod:`bonded` and :mod:`packing` (rigid bonded spheres), :mod:`plots`, :mod:`vtk`,
-                     :mod:`provenance` (where results come from)
+                     law), :mod:`bonded`, :mod:`packing` and :mod:`shapes` (rigid bonded spheres), :mod:`plots`,
+                     :mod:`vtk`, :mod:`provenance` (where results come from)
 :mod:`studies`       what scripts build and run: uniaxial tests, structures, calibration, campaigns
 :mod:`reports`       pages, tables and pictures of finished studies
 :mod:`verification`  cases with a reference each
@@ -26,8 +26,8 @@ here                 what a scene imports: :mod:`mesh` (meshes), :mod:`materialp
 ===================  ============================================================================================
 
 The library imports nothing of the houses, studies nothing of reports. Only :mod:`mesh`, :mod:`materialpoint`,
-:mod:`packing`, :mod:`plots`, :mod:`provenance` and parts of the houses, such as :mod:`studies.calibration`, work
-outside YADE.
+:mod:`packing`, :mod:`shapes`, :mod:`plots`, :mod:`provenance` and parts of the houses, such as
+:mod:`studies.calibration`, work outside YADE.
 """
 from . import mesh
 from ._lazy import lazy
@@ -42,7 +42,8 @@ _LAZY = {
 	"out_of_balance": "relaxation",
 	"EnergyBalance": "energy", "StepMeter": "meter", "estimate": "accuracy.estimate",
 	"effects": "effect_table",
-	"materialpoint": None, "bonded": None, "packing": None, "plots": None, "vtk": None, "provenance": None,
+	"materialpoint": None, "bonded": None, "packing": None, "shapes": None, "plots": None, "vtk": None,
+	"provenance": None,
 	"studies": None, "reports": None, "verification": None, "accuracy": None,
 }
 #: shorter names of modules in the houses

@@ -85,11 +85,8 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 			if packing.bonds is not None
 			else packing.neighbours(DEFAULT_GAP * packing.radii.max())
 		)
-	for i, j in pairs:
-		if (packing.centres[i] == packing.centres[j]).all():
-			raise ValueError(
-				f"spheres {i} and {j} of the packing have the same centre and cannot be bonded"
-			)
+	for i, j in pairs[(packing.centres[pairs[:, 0]] == packing.centres[pairs[:, 1]]).all(axis=1)]:
+		raise ValueError(f"spheres {i} and {j} of the packing have the same centre and cannot be bonded")
 	if len(pairs) == 0:
 		raise ValueError(
 			"no two spheres are closer than the gap: nothing would be bonded; give a larger gap [m] (the "
@@ -114,7 +111,7 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 			O.bodies.erase(i)
 		raise
 	_warn_of_pieces(packing, pairs)
-	return BondedSample(ids, packing.lower, packing.upper, len(pairs))
+	return BondedSample(ids, packing.lower, packing.upper, len(pairs), packing.shape and packing)
 
 
 class Weibull:
@@ -160,8 +157,9 @@ class BondedSample:
 	The arrays are copies and cannot be written to; velocities and positions are set in the State of the spheres.
 	"""
 
-	def __init__(self, ids, lower, upper, bonds):
+	def __init__(self, ids, lower, upper, bonds, shaped=None):
 		self._appended = BodyIds(ids)
+		self._shaped = shaped
 		#: corners of the box at the start [m]
 		self.lower, self.upper = np.array(lower, float), np.array(upper, float)
 		self.initial_bonds = bonds  #: number of bonds at the start
@@ -186,6 +184,22 @@ class BondedSample:
 
 	def __len__(self):
 		return len(self.ids)
+
+	@property
+	def area(self):
+		"""Area of the face across y at the start [m²], which platens load, see :meth:`face`."""
+		return self.face("y")
+
+	def face(self, axis):
+		"""Area of the face across an axis, "x", "y" or "z", at the start [m²]: that of the packing's shape
+		(:meth:`packing.Packing.area`), or of its box where it has none.
+
+		:raises ValueError: a shape without a flat face there, as a ball
+		"""
+		number = "xyz".index(axis)
+		if self._shaped is not None:
+			return self._shaped.area(number)
+		return float(np.delete(self.upper - self.lower, number).prod())
 
 	@property
 	def positions(self):

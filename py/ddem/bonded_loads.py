@@ -32,12 +32,13 @@ def platens(
 		good, and feel its spring in both directions.
 	:param shear_stiffness: of the walls along their plane, for bonded spheres [Pa]; 0: their ends can contract.
 		ESyS-Particle's NRotBondedWall has that of *stiffness*.
-	:param area: of the loaded face [m²], for specimens that do not fill their box: pi/4 D² of a cylinder. None:
-		that of the box.
+	:param area: that stresses refer to [m²]. None: that of the loaded face, :meth:`bonded.BondedSample.face`. To be
+		given for packings that neither fill their box nor say their shape, and for those without flat ends.
 	:param axis: of loading, "x", "y" or "z".
 	:returns: :class:`Platens`; put its ``engines`` into O.engines after the interaction loop.
 	:raises ValueError: velocity zero or not finite, or negative without bonded walls, negative ramp, stiffness not
-		positive, no sphere at a wall that is to be bonded. Nothing is appended then.
+		positive, no sphere at a wall that is to be bonded, no area and a specimen without flat ends. Nothing is
+		appended then.
 	"""
 	if not math.isfinite(velocity) or velocity == 0:
 		raise ValueError(f"velocity = {velocity} m/s must be a number other than zero")
@@ -68,16 +69,13 @@ def platens(
 def _check_area(sample, area, axis):
 	if axis not in _AXES:
 		raise ValueError(f"axis = '{axis}' is unknown; use 'x', 'y' or 'z'")
-	box = _box_area(sample, axis)
-	if area is not None and not 0 < area <= 1.001 * math.pi / 2 * box:  # that of a disc on its side is pi/2 D L
+	box = float(np.delete(sample.upper - sample.lower, _AXES.index(axis)).prod())
+	if area is None:
+		sample.face(axis)
+	elif not 0 < area <= 1.001 * math.pi / 2 * box:  # that of a disc on its side is pi/2 D L
 		raise ValueError(
 			f"area = {area} m² must be positive, and not above that of the sample's box, {box:.6g} m²"
 		)
-
-
-def _box_area(sample, axis):
-	"""Face of the sample's box across an axis [m²]."""
-	return float(np.delete(sample.upper - sample.lower, _AXES.index(axis)).prod())
 
 
 def _two_walls(sample, axis, stiffness, shear_stiffness=0.0):
@@ -108,8 +106,8 @@ class Platens:
 		"""The platens on a sample of the current scene, for a scene that was loaded.
 
 		:param sample: as from :meth:`BondedSample.from_scene`
-		:param area: of the loaded face [m²], to be given again where it was given; None: that of the box around
-			the spheres at the start.
+		:param area: of the loaded face [m²], to be given again where it was given, or where the packing said
+			its shape (a scene does not save it); None: that of the box around the spheres at the start.
 		:param axis: of loading, "x", "y" or "z"
 		:raises RuntimeError: the scene has not two Walls of ElasticWallMat across that axis
 		"""
@@ -139,7 +137,7 @@ class Platens:
 		self._number, self._way = _AXES.index(axis), Vector3.Unit(_AXES.index(axis))
 		start = [O.bodies[wall].state.refPos[self._number] for wall in (bottom, top)]
 		self.height = start[1] - start[0]  #: distance of the walls at the start [m]
-		self.area = _box_area(sample, axis) if area is None else area  #: of the loaded face [m²]
+		self.area = sample.face(axis) if area is None else area  #: of the loaded face [m²]
 
 	@property
 	def force_top(self):
@@ -188,7 +186,7 @@ def servo(
 	"""
 	legs = _checked_legs(legs)
 	_check_area(sample, area, axis)
-	face, height = _box_area(sample, axis) if area is None else area, sample_height(sample, axis)
+	face, height = sample.face(axis) if area is None else area, _height(sample, axis)
 	mass = sum(O.bodies[i].state.mass for i in sample.ids)
 	if impedance is None:
 		density = mass / float((sample.upper - sample.lower).prod())
@@ -205,7 +203,7 @@ def servo(
 	return ServoPlatens(sample, walls, *_two_walls(sample, axis, stiffness), area, axis)
 
 
-def sample_height(sample, axis):
+def _height(sample, axis):
 	"""Length of a sample's box along an axis, "x", "y" or "z" [m]."""
 	return float((sample.upper - sample.lower)[_AXES.index(axis)])
 

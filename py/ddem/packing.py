@@ -1,19 +1,29 @@
 # GPL v2 or later, see LICENSE.
-"""Packings of spheres: random prisms and layers of a range of radii, neighbours, CSV files."""
+"""Packings of spheres: random fillings of convex specimens with a range of radii, neighbours, CSV files::
+
+	packing = ddem.packing.fill(ddem.packing.Cylinder((0, 0, 0), (0, 0.1, 0), 0.025), rmin=1e-3, rmax=3e-3)
+
+:func:`fill` takes any of :mod:`shapes` and a tenth of a millisecond a sphere. :func:`prism` and :func:`layer` are
+boxes of GenGeo's packer, unless told otherwise; the same algorithm, some fifty times slower. Results that are
+documented with a seed are of GenGeo's packings.
+"""
 import contextlib
 import ctypes
 import hashlib
 import json
 import math
+import numbers
 import os
 import re
 import sys
 
 import numpy as np
 
-from . import provenance
+from . import _packing, provenance
+from .shapes import Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle  # noqa: F401: packing.Disc
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
+GENERATORS = ("gengeo", "fill")  #: what packs a prism or a layer
 
 # overlap and distance to the walls that the packer allows, of the largest radius; the tutorial's 1e-5 mm for 2 mm
 _TOLERANCE = 5e-6
@@ -21,14 +31,16 @@ _FLAT = 1e-9  # a packing thinner than this share of a radius is a layer
 
 
 class Packing:
-	"""Spheres in a box, and pairs of them that are to be bonded. Plain numpy arrays; needs no YADE."""
+	"""Spheres in a box or another shape, and pairs of them that are to be bonded. Plain numpy arrays;
+	needs no YADE."""
 
-	def __init__(self, centres, radii, lower=None, upper=None, bonds=None):
+	def __init__(self, centres, radii, lower=None, upper=None, bonds=None, shape=None):
 		"""
 		:param centres: (n, 3) [m]
 		:param radii: (n,) [m]
 		:param lower, upper: corners of the box [m]; None: that of the spheres
 		:param bonds: (m, 2) pairs of rows, or None when nothing is said about bonds
+		:param shape: one of :mod:`shapes` that the spheres fill; None: their box
 		:raises ValueError: shapes that do not fit, numbers that are not finite, radii that are not positive,
 			bonds to unknown spheres
 		"""
@@ -39,17 +51,18 @@ class Packing:
 				f"a packing needs a radius for each centre: got {len(self.centres)} centres and "
 				f"{len(self.radii)} radii"
 			)
-		for row, (centre, radius) in enumerate(zip(self.centres, self.radii)):
-			if not np.isfinite(centre).all():
-				raise ValueError(f"sphere {row}: centre {tuple(centre)} m is not finite")
-			if not (radius > 0 and math.isfinite(radius)):
-				raise ValueError(f"sphere {row}: radius = {radius} m must be positive and finite")
+		for row in np.flatnonzero(~np.isfinite(self.centres).all(axis=1)):
+			raise ValueError(f"sphere {row}: centre {tuple(self.centres[row].tolist())} m is not finite")
+		for row in np.flatnonzero(~((self.radii > 0) & np.isfinite(self.radii))):
+			raise ValueError(f"sphere {row}: radius = {self.radii[row]} m must be positive and finite")
 		around = self.radii[:, None]
 		#: corner of the box [m]
 		self.lower = np.array((self.centres - around).min(axis=0) if lower is None else lower, float)
 		#: corner of the box [m]
 		self.upper = np.array((self.centres + around).max(axis=0) if upper is None else upper, float)
 		self.bonds = None if bonds is None else _checked_bonds(bonds, len(self.radii))
+		#: one of :mod:`shapes` that the spheres fill; None: their box
+		self.shape = shape
 
 	def __len__(self):
 		return len(self.radii)
@@ -66,9 +79,28 @@ class Packing:
 		return bool(np.ptp(self.centres[:, 2]) <= _FLAT * self.radii.max())
 
 	@property
+	def volume(self):
+		"""Volume of the shape, or of the box where there is none [m³]; a layer is as deep as its box."""
+		if self.shape is None:
+			return float(self.size.prod())
+		return self.shape.volume * (float(self.size[2]) if self.shape.dimension == 2 else 1)
+
+	@property
 	def solid_fraction(self):
-		"""Volume of the spheres over the volume of the box [-]."""
-		return float((4 / 3 * math.pi * self.radii**3).sum() / self.size.prod())
+		"""Volume of the spheres over :attr:`volume` [-]."""
+		return float((4 / 3 * math.pi * self.radii**3).sum() / self.volume)
+
+	def area(self, axis=1):
+		"""Area of the flat face across *axis* (0, 1 or 2) [m²], which platens load; the smaller one where two
+		differ. A layer is as deep as its box.
+
+		:raises ValueError: a shape without a flat face there, as a ball; *axis* is another number
+		"""
+		if axis not in (0, 1, 2):
+			raise ValueError(f"axis = {axis} must be 0, 1 or 2, for x, y or z")
+		if self.shape is None:
+			return float(np.delete(self.size, axis).prod())
+		return self.shape.face(axis) * (float(self.size[2]) if self.shape.dimension == 2 and axis < 2 else 1)
 
 	def neighbours(self, gap):
 		"""Pairs of spheres whose surfaces are closer than *gap* [m] or overlap:
@@ -147,7 +179,32 @@ def of(spheres, lower=None, upper=None):
 	return Packing(centres, radii, lower, upper)
 
 
-def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
+def fill(shape, rmin, rmax, seed=1, fails=5000):
+	"""Random packing of touching spheres in a convex shape; in one of the plane, one layer of them.
+
+	The insertion of Place and Mora (2001), as in :func:`prism`, with the touching spheres in closed form:
+	seed spheres at random, with radii from *rmin* to its mean with *rmax*, then spheres within the range that touch
+	four others or walls (three in a layer), until *fails* random points in a row gave none. 20 000 spheres take
+	about two seconds.
+
+	:param shape: :class:`Box`, :class:`Cylinder`, :class:`Ball`, :class:`Polyhedron`; in the plane
+		:class:`Rectangle`, :class:`Disc`, :class:`Polygon`
+	:param rmin, rmax: range of radii [m]
+	:param seed: same seed, same packing, to the last bit on any machine (for the hull of a polyhedron or polygon:
+		with the same version of Qhull)
+	:param fails: more give a denser packing, and take longer
+	:returns: :class:`Packing` with that shape; no overlap and no gap where spheres touch is above 1e-10 *rmax*
+	:raises ValueError: another shape, radii that are not positive, a range of radii that is empty or does not fit,
+		a seed or fails that is no whole number from 0 or 1 upwards
+	"""
+	_check_order(shape, rmin, rmax, seed, fails)
+	provenance.note_seed(seed)
+	spheres = _fill(shape, rmin, rmax, seed, fails)
+	depth = np.array([0, 0, rmax if shape.dimension == 2 else 0])
+	return Packing(spheres[:, :3], spheres[:, 3], shape.lower - depth, shape.upper + depth, shape=shape)
+
+
+def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None, generator="gengeo"):
 	"""Random packing of touching spheres in a prism, x from 0 to *width*, y (the axis of loading) from 0 to
 	*height*, z from -*depth*/2 to *depth*/2.
 
@@ -159,8 +216,11 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 	:param fails: more give a denser packing, and take longer
 	:param keep: folder, made when missing, from which a packing with the same parameters is taken where it was made
 		before, and where it is kept otherwise
+	:param generator: "gengeo", or "fill" for :func:`fill`: the same algorithm, much faster, with other packings,
+		which touch more of the walls: a prism of them is 4 % stiffer
 	:returns: :class:`Packing`
-	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit
+	:raises ValueError: sizes that are not positive, a range of radii that is empty or does not fit, an unknown
+		generator
 	:raises ImportError: GenGeo is missing
 	"""
 	_check_sizes({"width": width, "height": height, "depth": depth, "rmin": rmin, "rmax": rmax}, rmin, rmax)
@@ -169,14 +229,19 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 			f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} x {depth} m; "
 			"choose a smaller radius, or layer()"
 		)
-	lower, upper = (0, 0, -depth / 2), (width, height, depth / 2)
+	shape = Box((0, 0, -depth / 2), (width, height, depth / 2))
+	_check_generator(generator, shape, rmin, rmax, seed, fails)
 	provenance.note_seed(seed)
-	path = _kept(keep, (width, height, depth), rmin, rmax, seed, fails)
+	path = _kept(keep, (width, height, depth), rmin, rmax, seed, fails, generator)
 	if path and os.path.exists(path):
 		kept = _read(path)
-		return Packing(kept.centres, kept.radii, lower, upper)
-	spheres = _pack((width, height, depth), rmin, rmax, seed, fails)
-	packing = Packing(spheres[:, :3] - np.array([0, 0, depth / 2]), spheres[:, 3], lower, upper)
+		return Packing(kept.centres, kept.radii, shape.lower, shape.upper, shape=shape)
+	if generator == "fill":
+		spheres = _fill(shape, rmin, rmax, seed, fails)
+	else:
+		spheres = _pack((width, height, depth), rmin, rmax, seed, fails)
+		spheres[:, 2] -= depth / 2
+	packing = Packing(spheres[:, :3], spheres[:, 3], shape.lower, shape.upper, shape=shape)
 	if path:
 		os.makedirs(keep, exist_ok=True)
 		packing.write(f"{path}.{os.getpid()}")
@@ -184,7 +249,7 @@ def prism(width, height, depth, rmin, rmax, seed=1, fails=5000, keep=None):
 	return packing
 
 
-def layer(width, height, rmin, rmax, seed=1, fails=5000):
+def layer(width, height, rmin, rmax, seed=1, fails=5000, generator="gengeo"):
 	"""One layer of touching spheres in the plane z = 0, x from 0 to *width*, y from 0 to *height*;
 	its box is 2 *rmax* deep.
 
@@ -197,10 +262,14 @@ def layer(width, height, rmin, rmax, seed=1, fails=5000):
 			f"rmax = {rmax} m: a sphere of {2 * rmax} m does not fit into {width} x {height} m; choose "
 			"a smaller radius"
 		)
+	shape = Rectangle((0, 0), (width, height))
+	_check_generator(generator, shape, rmin, rmax, seed, fails)
+	if generator == "fill":
+		return fill(shape, rmin, rmax, seed, fails)
 	provenance.note_seed(seed)
 	spheres = _pack((width, height), rmin, rmax, seed, fails)
 	spheres[:, 2] = 0
-	return Packing(spheres[:, :3], spheres[:, 3], lower=(0, 0, -rmax), upper=(width, height, rmax))
+	return Packing(spheres[:, :3], spheres[:, 3], (0, 0, -rmax), (width, height, rmax), shape=shape)
 
 
 def read(particles, bonds=None, length_unit="m"):
@@ -247,11 +316,12 @@ def _read(particles, bonds=None, length_unit="m"):
 	return Packing(data[:, :3], data[:, 3], bonds=pairs)
 
 
-def _kept(folder, size, rmin, rmax, seed, fails):
+def _kept(folder, size, rmin, rmax, seed, fails, generator):
 	"""Where in a folder the packing with these parameters is kept."""
 	if folder is None:
 		return None
-	key = hashlib.sha256(json.dumps([size, (rmin, rmax), seed, fails]).encode()).hexdigest()[:12]
+	asked = [size, (rmin, rmax), seed, fails] + ([] if generator == "gengeo" else [generator])
+	key = hashlib.sha256(json.dumps(asked).encode()).hexdigest()[:12]
 	return os.path.join(folder, f"packing-seed{seed}-{key}.csv")
 
 
@@ -261,6 +331,37 @@ def _check_sizes(sizes, rmin, rmax):
 			raise ValueError(f"{name} = {value} m must be positive and finite")
 	if rmin > rmax:
 		raise ValueError(f"rmin = {rmin} m is above rmax = {rmax} m")
+
+
+def _check_order(shape, rmin, rmax, seed, fails):
+	if not isinstance(shape, (Ball, Box, Cylinder, Polygon, Polyhedron)):
+		raise ValueError(
+			f"{type(shape).__name__} is no shape to fill: give a Box, Cylinder, Ball or Polyhedron, or, "
+			"for a layer, a Rectangle, Disc or Polygon"
+		)
+	_check_sizes({"rmin": rmin, "rmax": rmax}, rmin, rmax)
+	if rmax > shape.inner * (1 + _FLAT):
+		raise ValueError(
+			f"rmax = {rmax} m: the largest sphere that fits into {shape} has a radius of "
+			f"{shape.inner:.6g} m; choose a smaller one"
+		)
+	for name, value, least in (("seed", seed, 0), ("fails", fails, 1)):
+		if isinstance(value, bool) or not isinstance(value, numbers.Integral) or not least <= value < 2**64:
+			raise ValueError(f"{name} = {value} must be a whole number from {least} to 2^64 - 1")
+
+
+def _check_generator(generator, *order):
+	if generator not in GENERATORS:
+		raise ValueError(f"generator = '{generator}' is unknown; use {' or '.join(map(repr, GENERATORS))}")
+	if generator == "fill":
+		_check_order(*order)
+
+
+def _fill(shape, rmin, rmax, seed, fails):
+	"""Rows x, y, z, r: seeds, then spheres as they were inserted."""
+	return _packing.fill(
+		shape.dimension, shape.lower, shape.upper, shape.walls, float(rmin), float(rmax), int(seed), int(fails)
+	)
 
 
 def _checked_bonds(bonds, count):

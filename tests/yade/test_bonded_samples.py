@@ -60,6 +60,19 @@ def test_a_sphere_pack_is_appended():
 	assert bonded.append(spheres, "rock").bonds.tolist() == [[0, 1]]
 
 
+def test_platens_load_the_face_of_the_shape_that_was_filled():
+	O.materials.append(BondedMat(label="rock"))
+	cylinder = packing.Cylinder((0, 0, 0), (0, 0.02, 0), 0.005)
+	sample = bonded.append(packing.fill(cylinder, 1e-3, 2e-3, fails=200), "rock")
+	assert bonded.platens(sample, velocity=0.2).area == pytest.approx(math.pi * 0.005**2)
+	ball = bonded.append(packing.fill(packing.Ball((0, 0, 0), 0.006), 1e-3, 2e-3, fails=200), "rock")
+	bodies = len(O.bodies)
+	with pytest.raises(ValueError, match="the ball of radius 0.006 m has no flat face"):
+		bonded.platens(ball, velocity=0.2)
+	assert len(O.bodies) == bodies
+	assert bonded.platens(ball, velocity=0.2, area=1e-4).area == 1e-4
+
+
 def test_the_area_of_a_cylinder_is_its_own():
 	"""Stress of UCS is force over pi/4 D² (ISRM), not over the square around it."""
 	width = 0.01
