@@ -73,13 +73,13 @@ void EdgeTraction::act(const OwnEdges& own, Real time, ddem::Motion& motion) con
 		start = start + forces.start;
 		end   = end + forces.end;
 		if (tractions.empty()) continue;
-		const auto own = [&](bool second) {
+		const auto stressAt = [&](bool second) {
 			const Vector2r& t = tractions[2 * edge.given + (second != edge.turned ? 1 : 0)];
 			return ddem::EdgeStress { 0, 0, { f * t[0], f * t[1] } };
 		};
 		// linear: one falls from the start to nothing, the other grows to the end
-		const auto first  = ddem::edgeForces(own(false), { share.start, 0 }, along, length, edge.thickness);
-		const auto second = ddem::edgeForces(own(true), { 0, share.end }, along, length, edge.thickness);
+		const auto first = ddem::edgeForces(stressAt(false), { share.start, 0 }, along, length, edge.thickness);
+		const auto second = ddem::edgeForces(stressAt(true), { 0, share.end }, along, length, edge.thickness);
 		start             = start + first.start + second.start;
 		end               = end + first.end + second.end;
 	}
