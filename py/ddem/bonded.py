@@ -37,7 +37,7 @@ from yade import (
 	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
 	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
-	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, NewtonIntegrator, O,
+	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, NewtonIntegrator, O,
 	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
@@ -461,7 +461,7 @@ def law():
 
 def _materials(material, count):
 	"""The material of each of some spheres, checked."""
-	if isinstance(material, (str, BondedMat)):
+	if isinstance(material, (str, Material)):
 		return [_material(material)] * count
 	materials = list(material)
 	if len(materials) != count:

@@ -125,8 +125,8 @@ def test_triaxial_pressure_is_kept_and_strengthens():
 			largest = max(largest, test.stress)
 		assert np.mean(list(test.confinement.stress.values())) == pytest.approx(pressure, rel=0.3)
 		strengths.append(largest)
-	# with friction of 22° or more, each MPa of pressure gives at least tan²(45° + 11°) = 2.2
-	assert strengths[1] - strengths[0] > 2 * 18e6
+	# spheres that roll have little internal friction: 16° or so, tan²(45° + 8°) = 1.8
+	assert 1.5 * 18e6 < strengths[1] - strengths[0] < 5 * 18e6
 
 
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
@@ -198,5 +198,5 @@ def test_saved_in_the_midst_of_a_leg_it_goes_on(tmp_path):
 			sample = ddem.bonded.BondedSample.from_scene()
 			press = ddem.bonded.Platens.from_scene(sample)
 		O.run(1500, True)
-		results.append((press.strain, press.stress, [e.leg for e in press.engines]))
+		results.append((press.strain, press.force_top, press.force_bottom, [e.leg for e in press.engines]))
 	assert results[0] == results[1]  # with damping, whose engine acts before the integrator knows its scene
