@@ -1,11 +1,13 @@
 # GPL v2 or later, see LICENSE.
-"""Crush, or pull apart, one sample of bonded spheres: generated, or from files.
+"""Crush, pull apart, confine or split one sample of bonded spheres: generated, or from files.
 
 Run:      scripts/ddem run scripts/ucs_bonded.py                    (compression, consistent bonds, rock density;
                                                                     a quarter of a minute)
           scripts/ddem run scripts/ucs_bonded.py --convention esys  (bonds, contacts,
                                                                     walls and masses of ESyS-Particle's tutorial)
           scripts/ddem run scripts/ucs_bonded.py --test tension
+          scripts/ddem run scripts/ucs_bonded.py --test triaxial --pressure 20e6     (or oedometer, brazilian)
+          scripts/ddem run scripts/ucs_bonded.py --shape cylinder --criterion softening --scatter 8
           scripts/ddem run scripts/ucs_bonded.py --particles P.csv --bonds B.csv --length-unit mm
           scripts/ddem run scripts/ucs_bonded.py --help             (every parameter of model and test)
 Writes:   a table here, and into out/ucs_bonded: report.html with pictures, summary.json, rigid.csv (time series),
@@ -44,8 +46,15 @@ from yade.ddem.studies.commandline import count, not_negative, number, positive,
 MASS = {"consistent": ("solid", 2600.0), "esys": ("cube", 1e6)}
 # Speed of each wall [m/s]: the stress of the first wave, ρcv, has to stay well below the strength,
 # which is small in tension.
-VELOCITY = {"compression": 0.125, "tension": 0.125 / 4}
-STRAIN = {"compression": 5e-3, "tension": 1e-3}  # largest [-]
+VELOCITY = {"compression": 0.125, "tension": 0.125 / 4, "triaxial": 0.25, "oedometer": 0.25, "brazilian": 0.0625}
+STRAIN = {"compression": 5e-3, "tension": 1e-3, "triaxial": 1e-2, "oedometer": 5e-3, "brazilian": 4e-3}  # largest [-]
+FLAT = math.radians(15)  # half of the angle that each flat end of a disc takes
+# material of each criterion by which bonds break, and its options
+CRITERIA = {
+	"mohr-coulomb": (BondedMat, {}),
+	"parallel": (ParallelBondMat, {"momentContribution": "moment_contribution"}),
+	"softening": (SofteningBondMat, {"tensionEnergy": "tension_energy", "shearEnergy": "shear_energy"}),
+}
 
 
 @commandline.steps_told()
@@ -63,6 +72,8 @@ def main():
 	)
 	closing = options.velocity * (2 if options.drive == "both" else 1)
 	duration = options.strain * platens.height / closing + 0.5 * options.ramp
+	if options.test == "triaxial":
+		duration += options.pressure_ramp
 	kind = uniaxial.TensionTest if options.test == "tension" else uniaxial.CompressionTest
 	shown = options.pictures or options.vtk
 	test = kind(
@@ -91,32 +102,76 @@ def make(options):
 	and what the report says about the sample."""
 	O.reset()
 	packing = read_packing(options)
+	kind, own = CRITERIA[options.criterion]
 	O.materials.append(
-		BondedMat(
+		kind(
 			label="bonds", density=options.density, young=options.young, poisson=options.poisson,
 			cohesion=options.cohesion, bondFrictionAngle=options.friction_angle,
 			tensileStrength=options.tensile_strength or math.inf, frictionStatic=options.friction[0],
 			frictionDynamic=options.friction[1],
 			gradualFriction=options.gradual_friction, normalDamping=options.contact_damping[0],
-			shearDamping=options.contact_damping[1]
+			shearDamping=options.contact_damping[1],
+			**{attribute: getattr(options, name) for attribute, name in own.items()}
 		)
 	)
 	sample = ddem.bonded.append(
-		packing, "bonds", gap=None if packing.bonds is not None else options.gap, mass_law=options.mass_law
+		packing, "bonds", gap=None if packing.bonds is not None else options.gap, mass_law=options.mass_law,
+		scatter=ddem.bonded.Weibull(options.scatter, options.seed) if options.scatter else None
 	)
-	platens = ddem.bonded.platens(
-		sample, -options.velocity if options.test == "tension" else options.velocity, options.ramp,
-		stiffness=options.wall_stiffness, both=options.drive == "both",
-		bonded=options.bonded_walls, shear_stiffness=options.wall_shear_stiffness
-	)
-	O.engines = ddem.bonded.engines(platens, options.viscosity, options.rotational_viscosity, options.convention)
+	platens, loads = load(options, sample)
+	O.engines = ddem.bonded.engines(loads, options.viscosity, options.rotational_viscosity, options.convention)
 	critical = ddem.bonded.critical_time_step()
 	O.dt = options.dt or options.safety * critical
 	return platens, critical, describe(options, packing, sample, critical)
 
 
+def load(options, sample):
+	"""The platens that are measured, and all that loads the sample."""
+	if options.test == "triaxial":
+		height = float(sample.upper[1] - sample.lower[1])
+		platens = ddem.bonded.triaxial(
+			sample, options.pressure, options.strain, options.strain * height / (2 * options.velocity),
+			options.pressure_ramp, 4 * options.velocity, options.wall_stiffness
+		)
+		return platens, platens
+	area = None
+	if options.test == "brazilian":  # the stress is then 2 P/(π D L), the tensile strength of a disc
+		diameter, _, length = sample.upper - sample.lower
+		area = math.pi / 2 * float(diameter * length)
+	platens = ddem.bonded.platens(
+		sample, -options.velocity if options.test == "tension" else options.velocity, options.ramp,
+		stiffness=options.wall_stiffness, both=options.drive == "both",
+		bonded=options.bonded_walls, shear_stiffness=options.wall_shear_stiffness, area=area
+	)
+	if options.test == "oedometer":
+		return platens, [platens, ddem.bonded.confine(sample, stiffness=options.wall_stiffness)]
+	return platens, platens
+
+
+def flattened_disc(diameter, length):
+	"""A disc on its side for the Brazilian test, with flat ends so that it does not crush where it is touched
+	(Wang, Jia, Kou, Zhang, Lindqvist 2004)."""
+	around = [(math.sin(a), math.cos(a)) for a in (2 * math.pi * k / 72 for k in range(72))]
+	level = math.cos(FLAT)
+	corners = [(x, y) for x, y in around if abs(y) < level]
+	corners += [(sx * math.sin(FLAT), sy * level) for sx in (-1, 1) for sy in (-1, 1)]
+	return ddem.packing.Polyhedron(
+		[
+			(diameter / 2 * x, diameter / 2 * (y + level), z) for x, y in corners
+			for z in (-length / 2, length / 2)
+		]
+	)
+
+
 def read_packing(options):
 	"""The spheres, and their bonds where a file lists them."""
+	if options.particles is None and options.shape != "prism":
+		width, height, depth = options.size
+		if options.shape == "cylinder":
+			body = ddem.packing.Cylinder((0, 0, 0), (0, height, 0), width / 2)
+		else:
+			body = flattened_disc(width, depth)
+		return ddem.packing.fill(body, *options.radii, seed=options.seed, fails=options.fails)
 	if options.particles is None:
 		return ddem.packing.prism(
 			*options.size, *options.radii, seed=options.seed, fails=options.fails, keep=options.packings,
@@ -150,9 +205,20 @@ def read_options():
 	run = parser.add_argument_group("run")
 	run.add_argument(
 		"--test",
-		choices=("compression", "tension"),
+		choices=tuple(VELOCITY),
 		default="compression",
-		help="walls that push, or walls that hold the ends and pull",
+		help=(
+			"walls that push; walls that hold the ends and pull; walls that push with --pressure on the "
+			"sides, or with sides that do not move; walls that split a disc"
+		),
+	)
+	run.add_argument(
+		"--pressure", type=positive, default=SUPPRESS, metavar="PA",
+		help="on all sides, before and while the sample is crushed (default: none; a triaxial test needs it)"
+	)
+	run.add_argument(
+		"--pressure-ramp", type=positive, default=1e-4, metavar="S",
+		help="time over which it grows (triaxial test)"
 	)
 	run.add_argument(
 		"--convention",
@@ -179,6 +245,16 @@ def read_options():
 	sample.add_argument(
 		"--radii", type=positive, nargs=2, default=(0.4e-3, 2e-3), metavar=("MIN", "MAX"),
 		help="range of the spheres' radii [m]"
+	)
+	sample.add_argument(
+		"--shape",
+		choices=("prism", "cylinder", "disc"),
+		default=SUPPRESS,
+		help=(
+			"of the sample; cylinder: the diameter is W; disc: on its side, the diameter is W, its length "
+			"D (default: prism; in the Brazilian test disc). Cylinders and discs are filled by "
+			"ddem.packing.fill"
+		),
 	)
 	sample.add_argument("--seed", type=seed, default=1, help="draws the packing")
 	sample.add_argument(
@@ -229,6 +305,26 @@ def read_options():
 	bonds.add_argument(
 		"--gap", type=not_negative, default=5e-6, metavar="M",
 		help="spheres closer than this are bonded, where no file lists the bonds"
+	)
+	bonds.add_argument(
+		"--criterion", choices=tuple(CRITERIA), default="mohr-coulomb",
+		help="by which bonds break: BondedMat, ParallelBondMat or SofteningBondMat"
+	)
+	bonds.add_argument(
+		"--moment-contribution", type=share, default=1.0, metavar="PART",
+		help="share of the stress of moments that breaks parallel bonds"
+	)
+	bonds.add_argument(
+		"--tension-energy", type=positive, default=100.0, metavar="J/M2",
+		help="that softening bonds take in tension"
+	)
+	bonds.add_argument(
+		"--shear-energy", type=positive, default=1000.0, metavar="J/M2",
+		help="that softening bonds take in shear"
+	)
+	bonds.add_argument(
+		"--scatter", type=positive, default=SUPPRESS, metavar="M",
+		help="Weibull modulus of the strength of bonds, drawn by the seed (default: all are equal)"
 	)
 	bonds.add_argument(
 		"--young", type=positive, default=100e9, metavar="PA",
@@ -354,7 +450,8 @@ def read_options():
 		("packings", None), ("particles", None), ("bonds", None), ("box", None), ("mass_law", law),
 		("density", density), ("bonded_walls", options.test == "tension"),
 		("velocity", VELOCITY[options.test]), ("strain", STRAIN[options.test]),
-		("rotational_viscosity", options.viscosity), ("dt", None), ("tensile_strength", None)
+		("rotational_viscosity", options.viscosity), ("dt", None), ("tensile_strength", None),
+		("shape", "disc" if options.test == "brazilian" else "prism"), ("pressure", None), ("scatter", None)
 	):
 		given.setdefault(name, value)
 	options.friction_angle = math.radians(options.phi) if "phi" in given else math.atan(options.tan_phi)
@@ -385,6 +482,14 @@ def check(options, parser):
 			"argument --box: its second corner must be above the first in x, y and z: "
 			f"got {' '.join(f'{v:g}' for v in options.box)} m"
 		)
+	if (options.test == "triaxial") != (options.pressure is not None):
+		parser.error("argument --pressure: it belongs to --test triaxial, which needs it")
+	if options.test == "brazilian" and options.shape != "disc" and not options.particles:
+		parser.error("argument --shape: the Brazilian test splits a disc")
+	if options.test in ("triaxial", "oedometer") and options.shape != "prism":
+		parser.error(f"argument --shape: the walls of --test {options.test} enclose a prism")
+	if options.convention == "esys" and options.criterion != "mohr-coulomb":
+		parser.error("argument --criterion: bonds of the convention esys break by mohr-coulomb")
 	if options.test == "tension" and not options.bonded_walls:
 		parser.error("argument --no-bonded-walls: walls that are not bonded only push, so there is no tension")
 	if options.wall_shear_stiffness and not options.bonded_walls:
@@ -408,7 +513,7 @@ def describe(options, packing, sample, critical):
 	if options.particles:
 		origin = f"from {os.path.basename(options.particles)}"
 	else:
-		packer = "GenGeo" if options.generator == "gengeo" else "ddem.packing.fill"
+		packer = "GenGeo" if options.generator == "gengeo" and options.shape == "prism" else "ddem.packing.fill"
 		origin = f"packed by {packer}, seed {options.seed}, until {options.fails} insertions in a row failed"
 	made = [
 		(
@@ -427,6 +532,12 @@ def describe(options, packing, sample, critical):
 		),
 		*parameter_tables.rows(material, parameter_tables.BONDED),
 	]
+	if options.scatter:
+		made.append(
+			("m", f"{options.scatter:g}", f"Weibull modulus of the bonds' strength, seed {options.seed}")
+		)
+	for name in CRITERIA[options.criterion][1].values():
+		made.append((name.replace("_", " "), f"{getattr(options, name):g}", f"of {type(material).__name__}"))
 	if options.tensile_strength:
 		made.append(("f_t", f"{options.tensile_strength / 1e6:.4g} MPa", "tensile strength of the bonds"))
 	if options.gradual_friction:
@@ -469,6 +580,8 @@ def settings(options, platens):
 			"stiffness of the walls, π r K for a sphere of radius r",
 		),
 	]
+	if options.pressure:
+		rows.append(("p", f"{options.pressure / 1e6:g} MPa", "pressure on the sides"))
 	if options.bonded_walls:
 		along = (
 			f"stiffness along them {options.wall_shear_stiffness / 1e9:g} GPa"
@@ -519,6 +632,23 @@ def notes(options, platens, run, closing):
 			"length, and moment arms that are not conservative for unequal radii, so the energy book does "
 			"not close exactly. Bonds between spheres with a gap g start with the stress E g/d₀, and "
 			"break at once where it exceeds their strength."
+		)
+	if options.test == "triaxial":
+		said.append(
+			f"Triaxial. A pressure of {options.pressure / 1e6:g} MPa on all sides grows over "
+			f"{1e6 * options.pressure_ramp:g} µs; then the walls on the sides keep it by servo while the "
+			"platens approach. The stress is the whole axial one, strain counts from the start."
+		)
+	if options.test == "oedometer":
+		said.append(
+			"Oedometer. The walls on the sides stand still; the modulus is that of one-dimensional "
+			"compression."
+		)
+	if options.test == "brazilian":
+		said.append(
+			"Brazilian. The stress is 2 P/(π D L), which a disc of diameter D and length L has across its "
+			"loaded diameter while it is elastic, so the strength is its tensile strength; the modulus "
+			"has no meaning as a modulus of the material."
 		)
 	if options.test == "compression":
 		said.append(

@@ -285,6 +285,54 @@ def test_tension_of_a_packing(perform):
 	assert "strength (UCS)" not in page
 
 
+def test_pressure_on_the_sides_strengthens(perform):
+	quick = ["--velocity", "0.5", "--seed", "2", *SMALL, *BARE]
+	alone, _ = perform(*quick)
+	peaks = [alone["ucs_MPa"]]
+	for pressure in ("10e6", "40e6"):
+		figures, folder = perform("--test", "triaxial", "--pressure", pressure, *quick)
+		series = Series.read(folder / "rigid.csv")
+		assert series["stress"].max() == pytest.approx(1e6 * figures["ucs_MPa"], rel=1e-6)
+		reached = np.argmin(abs(series["time"] - 1e-4))
+		assert series["stress"][reached] == pytest.approx(float(pressure), rel=0.1)
+		peaks.append(figures["ucs_MPa"])
+	assert peaks[0] < peaks[1] < peaks[2]
+
+
+def test_sides_that_stand_still_stiffen(perform):
+	quick = ["--velocity", "0.5", "--cohesion", "1e12", "--viscosity", "1e4", "--strain", "1e-3", *SMALL, *BARE]
+	free, _ = perform(*quick)
+	held, folder = perform("--test", "oedometer", *quick)
+	assert 1.0 < held["young_GPa"] / free["young_GPa"] < 1.5  # (1-ν)/((1+ν)(1-2ν)): 1.1 for ν = 0.2
+	assert "one-dimensional compression" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_brazilian_disc_splits(perform):
+	"""Of bonds whose sample bears 13 times in compression what it bears in tension;
+	others crush beneath the walls."""
+	strong = [
+		"--criterion", "parallel", "--moment-contribution", "0", "--cohesion", "400e6", "--tensile-strength",
+		"20e6",
+		"--radii", "0.8e-3", "2e-3", "--velocity", "0.25", *BARE
+	]
+	split, _ = perform("--test", "brazilian", "--size", "0.03", "0.03", "0.008", *strong)
+	pulled, _ = perform("--test", "tension", "--size", "0.015", "0.03", "0.008", "--generator", "fill", *strong)
+	assert 0.8 < split["ucs_MPa"] / pulled["tensile_MPa"] < 2.5
+	assert split["broken_in_tension"] > 2 * split["broken_in_shear"]
+
+
+def test_cylinders_and_criteria(perform):
+	figures, folder = perform(
+		"--shape", "cylinder", "--criterion", "softening", "--scatter", "6", "--tension-energy", "200",
+		"--velocity",
+		"0.5", "--radii", "0.5e-3", "2e-3", "--fails", "500", "--cohesion", "40e6", *BARE
+	)
+	page = (folder / "report.html").read_text(encoding="utf-8")
+	assert f"{1e6 * math.pi / 4 * 0.01**2:.4g} mm²" in page
+	assert "Weibull modulus" in page and "SofteningBondMat" in page
+	assert 5 < figures["ucs_MPa"] < 500
+
+
 def test_kept_packing_gives_the_same_test(perform, tmp_path):
 	keep = ["--packings", tmp_path / "kept"]
 	results = [origins.numbers(perform(*SMALL, *BARE, *options)[1] / "rigid.csv") for options in ([], keep, keep)]
@@ -331,6 +379,12 @@ def test_options_reach_the_model(job, monkeypatch):
 
 @pytest.mark.parametrize("arguments, message", [
 	(["--test", "bending"], "--test: invalid choice: 'bending'"),
+	(["--test", "triaxial"], "--pressure: it belongs to --test triaxial, which needs it"),
+	(["--pressure", "1e6"], "--pressure: it belongs to --test triaxial"),
+	(["--test", "oedometer", "--shape", "cylinder"], "--shape: the walls of --test oedometer enclose a prism"),
+	(["--test", "brazilian", "--shape", "prism"], "--shape: the Brazilian test splits a disc"),
+	(["--convention", "esys", "--criterion", "softening"], "--criterion: bonds of the convention esys"),
+	(["--criterion", "softening", "--tension-energy", "1e-3"], "tensionEnergy = 0.001 J/m² is not above"),
 	(["--convention", "esis"], "--convention: invalid choice: 'esis'"),
 	(["--young", "-1"], "--young: -1 must be positive"),
 	(["--velocity", "inf"], "--velocity: inf must be positive"),
