@@ -13,9 +13,8 @@ DDEM_PLUGIN((BondedPhys))
 std::atomic<long> BondedPhys::bondsMade { 0 };
 
 shared_ptr<BondedPhys>
-BondedPhys::contact(const Scene& scene, const BondedMat& first, const BondedMat& second, Real reach)
+BondedPhys::contact(const BondedMat& first, const BondedMat& second, const BondedMat* between, Real reach)
 {
-	const BondedMat* const between = materialBetween(scene, first, second);
 	const BondedMat &      a = between ? *between : first, &b = between ? *between : second;
 	auto phys             = boost::make_shared<BondedPhys>();
 	phys->young           = 2 * a.young * b.young / (a.young + b.young); // two halves in series

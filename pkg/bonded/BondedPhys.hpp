@@ -28,8 +28,10 @@ class BondedPhys : public RotStiffFrictPhys {
 public:
 	virtual ~BondedPhys() = default;
 
-	/// A contact between two materials, or of the one between them. \param reach sum of the radii [m], see reachOf
-	static shared_ptr<BondedPhys> contact(const Scene& scene, const BondedMat& a, const BondedMat& b, Real reach);
+	/// A contact between two materials. \param between the material of such pairs, or null
+	/// \param reach sum of the radii [m], see reachOf
+	static shared_ptr<BondedPhys>
+	contact(const BondedMat& a, const BondedMat& b, const BondedMat* between, Real reach);
 	/// Sum of the radii of an interaction [m], which sets its springs.
 	/// What is no sphere counts as the sphere's image.
 	static Real reachOf(const Interaction& I);

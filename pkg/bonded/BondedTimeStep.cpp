@@ -63,6 +63,11 @@ namespace {
 		if (bond && bond->bonded) {
 			spring.bending = bond->kb;
 			spring.torsion = bond->kt;
+			// thin bonds leave a contact that is stiffer than they are
+			const auto contact = ddem::contactStiffness(
+			        bond->elasticity(), math::min(geom->radius1 + geom->radius2, bond->bondLength));
+			spring.normal = math::max(spring.normal, contact.normal);
+			spring.shear  = math::max(spring.shear, contact.shear);
 		}
 		if (!central) spring.shear = math::max(spring.normal, spring.shear);
 		ddem::PairSpring damper = spring;

@@ -173,9 +173,14 @@ void Ip2_BondedMat_BondedMat_BondedPhys::go(
 {
 	if (interaction->phys) return;
 	refuseGrid(*scene, *interaction);
-	interaction->phys = BondedPhys::contact(
-	        *scene, static_cast<const BondedMat&>(*material1), static_cast<const BondedMat&>(*material2),
-	        BondedPhys::reachOf(*interaction));
+	const auto &     a = static_cast<const BondedMat&>(*material1), &b = static_cast<const BondedMat&>(*material2);
+	const BondedMat* between = nullptr;
+	try {
+		between = materialBetween(*scene, a, b);
+	} catch (const std::invalid_argument& error) { // what is thrown in the loop of InteractionLoop ends the program
+		stopAfterStep(*scene, error.what());
+	}
+	interaction->phys = BondedPhys::contact(a, b, between, BondedPhys::reachOf(*interaction));
 }
 
 void Ip2_FrictMat_BondedMat_BondedPhys::go(
@@ -191,7 +196,7 @@ void Ip2_FrictMat_BondedMat_BondedPhys::go(
 	like.young           = other.young;
 	like.frictionStatic  = math::tan(other.frictionAngle);
 	like.frictionDynamic = like.frictionStatic;
-	interaction->phys    = BondedPhys::contact(*scene, like, *bonded, BondedPhys::reachOf(*interaction));
+	interaction->phys    = BondedPhys::contact(like, *bonded, nullptr, BondedPhys::reachOf(*interaction));
 }
 
 void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs, const boost::python::object& factors)
@@ -217,7 +222,8 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 		if (!seen.insert({ first, second }).second || isBonded(old)) refuse(pair, "they are bonded already");
 		try {
 			auto phys = BondedPhys::contact(
-			        current, *a.material, *b.material, a.sphere->radius + b.sphere->radius);
+			        *a.material, *b.material, materialBetween(current, *a.material, *b.material),
+			        a.sphere->radius + b.sphere->radius);
 			const ddem::BondMaking making {
 				phys->elasticity(), length, a.sphere->radius, b.sphere->radius
 			};

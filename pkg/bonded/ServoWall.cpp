@@ -58,6 +58,47 @@ Real ServoWall::speedWanted(Real wanted) const
 	return ((rate - 0.5 * dashpot) * speed + wanted - force) / (rate + 0.5 * dashpot);
 }
 
+/// Which leg it is. Time counts while the engine acts and the sample has not failed.
+void ServoWall::keepTime()
+{
+	if (math::isnan(legStart) || (idle && !done())) {
+		legStart  = scene->time;
+		legBegins = true;
+	} else if (lastIter >= 0 && scene->iter != lastIter + 1)
+		legStart += scene->time - lastTime - scene->dt;
+	if (failed) legStart += scene->dt;
+	lastIter = scene->iter;
+	lastTime = scene->time;
+	while (!done() && scene->time >= legStart + durations[size_t(leg)] * (1 - 1e-12)) {
+		legStart += durations[size_t(leg)];
+		leg++;
+		legBegins = true;
+	}
+	idle = done();
+}
+
+Real ServoWall::place(const Scene& of) const
+{
+	Real sum = 0, count = 0;
+	for (const auto id : ids)
+		if (of.bodies->exists(id)) {
+			const State& state = *(*of.bodies)[id]->state;
+			sum += (state.pos - state.refPos).dot(direction);
+			count++;
+		}
+	return count > 0 ? sum / count : 0;
+}
+
+/// Before the interactions it would see no forces, and push for ever.
+void ServoWall::requireOrder() const
+{
+	for (auto engine = scene->engines.rbegin(); engine != scene->engines.rend() && engine->get() != this; ++engine)
+		if (dynamic_cast<const InteractionLoop*>(engine->get()))
+			throw std::runtime_error(
+			        "wrong order in O.engines: ServoWall comes before InteractionLoop and would miss its "
+			        "forces; put it after, before NewtonIntegrator");
+}
+
 void ServoWall::apply(const vector<Body::id_t>& bodies)
 {
 	if (kinds.size() != targets.size() || durations.size() != targets.size() || targets.empty())
@@ -65,6 +106,7 @@ void ServoWall::apply(const vector<Body::id_t>& bodies)
 		        "ServoWall has " + std::to_string(kinds.size()) + " kinds, " + std::to_string(targets.size())
 		        + " targets and " + std::to_string(durations.size())
 		        + " durations; each leg needs all three, and there must be one");
+	requireOrder();
 	const Real before = force;
 	force             = 0;
 	scene->forces.sync();
@@ -76,25 +118,22 @@ void ServoWall::apply(const vector<Body::id_t>& bodies)
 		scene->energy->add(-worked, "externalWork", workIx, false);
 	}
 
-	if (math::isnan(legStart)) legStart = scene->time;
-	while (!done() && scene->time >= legStart + durations[size_t(leg)] * (1 - 1e-12)) {
-		legStart += durations[size_t(leg)];
-		leg++;
-		legBegins = true;
-	}
+	keepTime();
 	if (failed) speed = 0;
 	else if (isForce()) {
-		const Real wanted = forceWanted(force), free = speedWanted(wanted);
+		const Real wanted = forceWanted(force), free = speedWanted(wanted), sign = wanted < 0 ? -1 : 1;
 		speed  = std::clamp(free, -velocity, velocity);
-		borne  = math::max(borne, force); // a wall that has not met the sample yet runs, too
-		failed = speed != free && force < failure * math::min(wanted, borne);
+		if (borne * sign < 0) borne = 0;
+		// the largest of this sense: a wall that has not met the sample yet runs, too
+		if (force * sign > borne * sign) borne = force;
+		failed = speed != free && force * sign < failure * math::min(wanted * sign, borne * sign);
 	} else {
-		if (legBegins && !done()) legFrom = displacement;
+		const Real now = place(*scene);
+		if (legBegins && !done()) legFrom = now;
 		const Real target = targets[size_t(std::min(leg, int(targets.size()) - 1))];
-		speed = (legFrom + share(scene->time + scene->dt) * (target - legFrom) - displacement) / scene->dt;
+		speed             = (legFrom + share(scene->time + scene->dt) * (target - legFrom) - now) / scene->dt;
 	}
 	legBegins = legBegins && done();
-	displacement += speed * scene->dt;
 	for (const auto id : bodies)
 		if (const auto& body = Body::byId(id, scene)) body->state->vel += speed * direction;
 }

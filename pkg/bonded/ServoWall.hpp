@@ -11,6 +11,9 @@ public:
 	virtual ~ServoWall() = default;
 	void apply(const vector<Body::id_t>& ids) override;
 	void postLoad(ServoWall&);
+	/// Mean way of the bodies since the start [m].
+	Real place(const Scene& of) const;
+	Real pyDisplacement() const { return place(*Omega::instance().getScene()); }
 	bool done() const { return leg >= int(targets.size()); }
 
 	// clang-format off
@@ -31,8 +34,9 @@ public:
 		"Where the sample gives way, a wall in force control runs at its limit: once its force has fallen "
 		"to :yref:`failure<ServoWall.failure>` times what is asked for and has been borne before, it stops for "
 		"good and :yref:`failed<ServoWall.failed>` is true.\n\n"
-		"Errors: ValueError for columns of the table that differ in length, unknown kinds, numbers out of "
-		"range, a direction of no length. Limits: a force lags behind by the dashpot's, *c v*.",
+		"Errors: RuntimeError for a place in O.engines where it sees no forces; ValueError for columns of the "
+		"table that differ in length, unknown kinds, numbers out of range, a direction of no length. Limits: "
+		"a force lags behind by the dashpot's, *c v*.",
 		((Vector3r,direction,Vector3r(0,-1,0),Attr::triggerPostLoad,
 			"Way along which forces and displacements count [-], into the sample: compression positive"))
 		((vector<std::string>,kinds,,Attr::triggerPostLoad,
@@ -51,15 +55,19 @@ public:
 		((Real,force,0,Attr::readonly,
 			"Force of the sample on the platen in the last step [N], against its way"))
 		((Real,speed,0,Attr::readonly,"Speed of the platen along its way [m/s]"))
-		((Real,displacement,0,Attr::readonly,"Way of the platen since the start [m]"))
 		((Real,work,0,Attr::readonly,"Work done on the sample so far [J], booked while energy is tracked"))
 		((int,leg,0,Attr::readonly,"Present leg, from 0 on; the number of legs after the last"))
 		((Real,legStart,NaN,Attr::readonly,"Time at which the present leg began [s]; NaN: it has not"))
 		((Real,legFrom,0,(Attr::readonly|Attr::hidden),"Force or displacement at which it began"))
-		((Real,borne,0,(Attr::readonly|Attr::hidden),"Largest force so far [N]"))
+		((Real,borne,0,(Attr::readonly|Attr::hidden),
+			"Largest force so far, in the sense of what is asked for [N]"))
+		((bool,idle,false,(Attr::readonly|Attr::hidden),"Whether all legs were done in the last step"))
+		((Real,lastTime,NaN,(Attr::readonly|Attr::hidden),"Time of the last step [s]"))
+		((long,lastIter,-1,(Attr::readonly|Attr::hidden),"Number of the last step"))
 		((bool,legBegins,true,(Attr::readonly|Attr::hidden),"Whether that is still to be found"))
 		((int,workIx,-1,(Attr::hidden|Attr::noSave),"Place of externalWork in the energy tracker")),
 		/*ctor*/,
+		.add_property("displacement",&ServoWall::pyDisplacement,"Way of the platen since the start [m]")
 		.add_property("done",&ServoWall::done,"Whether all legs are done")
 	);
 	// clang-format on
@@ -67,6 +75,8 @@ public:
 private:
 	Real forceWanted(Real found);
 	Real speedWanted(Real found) const;
+	void keepTime();
+	void requireOrder() const;
 	Real share(Real time) const;
 	bool isForce() const { return kinds[size_t(std::min(leg, int(kinds.size()) - 1))] == "force"; }
 };

@@ -94,12 +94,16 @@ void ServoPlaten::lookUp(const Scene& of, Exposure& sample)
 
 void ServoPlaten::nextLegs(Real time)
 {
-	if (std::isnan(legStart)) legStart = time;
+	if (std::isnan(legStart) || (idle && !done())) { // legs that are appended later begin then
+		legStart  = time;
+		legBegins = true;
+	}
 	while (!done() && time >= legStart + durations[std::size_t(leg)] * (1 - 1e-12)) {
 		legStart += durations[std::size_t(leg)];
 		leg++;
 		legBegins = true;
 	}
+	idle = done();
 }
 
 bool ServoPlaten::prepare(const Scene& of, Exposure& sample, ddem::RigidPlaten& platen)
@@ -154,15 +158,21 @@ bool ServoPlaten::prepare(const Scene& of, Exposure& sample, ddem::RigidPlaten& 
 	return true;
 }
 
-void ServoPlaten::finish(const Scene&, const ddem::RigidPlaten& platen)
+void ServoPlaten::finish(const Scene& of, const ddem::RigidPlaten& platen)
 {
 	force = platen.force;
 	speed = platen.velocity;
 	if (platen.driven) return;
 	legFrom   = platen.from;
 	legBegins = false;
-	const Real asked = platen.from + platen.share * (platen.to - platen.from);
-	if (failure > 0 && platen.limited && platen.force * asked < failure * asked * asked) failed = true;
+	const Real asked = platen.from + platen.share * (platen.to - platen.from), sign = asked < 0 ? -1 : 1;
+	// as long as its force grows, a platen only lags behind what is asked
+	if (std::isnan(grewAt) || borne * sign < 0 || force * sign > borne * sign + 1e-3 * std::abs(asked)) {
+		borne  = force;
+		grewAt = of.time;
+	}
+	const Real length = durations[std::size_t(std::min(leg, int(durations.size()) - 1))];
+	if (platen.limited && of.time > grewAt + 0.05 * length && force * sign < failure * asked * sign) failed = true;
 }
 
 } // namespace yade

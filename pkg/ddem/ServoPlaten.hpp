@@ -42,9 +42,9 @@ public:
 		"by :math:`\\tfrac12(1-\\cos\\pi\\tau)`, :math:`\\tau` from 0 to 1 in the duration, so that legs begin "
 		"and end without a jolt; after the last it keeps the last force or stands still.\n\n"
 		"Where the sample gives way, the platen in force control runs at its limit: once its force has fallen "
-		"to :yref:`failure<ServoPlaten.failure>` times what is asked for, it stops for good and "
-		":yref:`failed<ServoPlaten.failed>` is true. Its place in O.engines does not matter. Its work is "
-		"*externalWork* in O.energy.\n\n"
+		"to :yref:`failure<ServoPlaten.failure>` times what is asked for and has not grown for a twentieth of "
+		"the leg, it stops for good and :yref:`failed<ServoPlaten.failed>` is true. Its place in O.engines "
+		"does not matter. Its work is *externalWork* in O.energy.\n\n"
 		"Errors: tables whose columns differ in length, targets, durations, a limit, a mass or a dashpot out "
 		"of range; a direction that is not along x or y; nodes that are not held or that a kinematic engine "
 		"drives as well. Limits: a force lags behind by the dashpot's, *c v*.",
@@ -70,6 +70,10 @@ public:
 		((int,leg,0,Attr::readonly,"Present leg, from 0 on; the number of legs after the last"))
 		((Real,legStart,NaN,Attr::readonly,"Time at which the present leg began [s]; NaN: it has not"))
 		((Real,legFrom,0,(Attr::readonly|Attr::hidden),"Force or displacement at which it began"))
+		((bool,idle,false,(Attr::readonly|Attr::hidden),"Whether all legs were done in the last step"))
+		((Real,borne,0,(Attr::readonly|Attr::hidden),
+			"Force when it last grew, in the sense of what is asked for [N]"))
+		((Real,grewAt,NaN,(Attr::readonly|Attr::hidden),"Time at which it grew [s]"))
 		((bool,legBegins,true,(Attr::readonly|Attr::hidden),"Whether that is still to be found")),
 		/*ctor*/,
 		.add_property("done",&ServoPlaten::done,"Whether all legs are done")

@@ -38,7 +38,7 @@ from yade import (
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
 	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
 	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, NewtonIntegrator, O,
-	RampedTranslationEngine, Sphere, Vector3, ViscousBodyDamping, utils
+	RampedTranslationEngine, ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter, provenance
@@ -325,7 +325,8 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	Spheres of :yref:`BondedMat` meet each other, and walls, boxes and facets of :yref:`BondedMat`,
 	:yref:`ElasticWallMat` or :yref:`FrictMat`.
 
-	:param platens: :class:`Platens`, :class:`Confinement`, or a list of them, whose motion is included.
+	:param platens: :class:`bonded_loads.Platens`, :class:`bonded_loads.Confinement`, or a list of them, whose
+		motion is included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
 	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle
@@ -417,6 +418,13 @@ def check():
 			"wrong order in O.engines: it must be ForceResetter, InteractionLoop, NewtonIntegrator; "
 			"see ddem.bonded.engines()"
 		)
+	for place, engine in enumerate(O.engines):
+		if isinstance(engine, ServoWall) and not order[1] < place < order[2]:
+			raise RuntimeError(
+				"wrong order in O.engines: ServoWall must come between InteractionLoop and "
+				"NewtonIntegrator; see ddem.bonded.engines()"
+			)
+	_check_between()
 	esys = law().convention == "esys"
 	for material in O.materials:
 		if isinstance(material, (BondedMat, ElasticWallMat)):
@@ -441,6 +449,25 @@ def check():
 			f"O.dt = {O.dt} s is above the critical time step {limit} s of the bonds: the run would blow "
 			"up; set O.dt = ddem.bonded.time_step(0.8)"
 		)
+
+
+def _check_between():
+	"""Materials between two others must know them, and be the only ones there."""
+	bonded = [m for m in O.materials if isinstance(m, BondedMat)]
+	labels, seen = {m.label for m in bonded}, {}
+	for material in bonded:
+		for label in material.between:
+			if label not in labels:
+				raise ValueError(
+					f"BondedMat '{material.label}' is between {' and '.join(material.between)}, "
+					f"but O.materials has no BondedMat '{label}'"
+				)
+		pair = frozenset(material.between)
+		if pair and pair in seen:
+			raise ValueError(
+				f"BondedMat '{seen[pair]}' and '{material.label}' are both between {' and '.join(pair)}"
+			)
+		seen[pair] = material.label
 
 
 def law():

@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from yade import (
-	ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine, ServoWall, Vector3,
-	Wall, utils
+	ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine,
+	ServoWall, Vector3, Wall, utils
 )
 
 _AXES = "xyz"
@@ -22,7 +22,7 @@ def platens(
 ):
 	"""Set elastic walls below and above a sample and drive them towards each other along an axis, or apart.
 
-	:param sample: :class:`BondedSample`; the walls start at its box's lower and upper face,
+	:param sample: :class:`bonded.BondedSample`; the walls start at its box's lower and upper face,
 		and their area is that of the face.
 	:param velocity: speed of each wall [m/s], positive compresses, negative pulls (bonded walls only).
 	:param ramp: time over which the speed grows linearly from zero [s].
@@ -50,6 +50,7 @@ def platens(
 	if not (ramp >= 0 and math.isfinite(ramp)):
 		raise ValueError(f"ramp = {ramp} s must not be negative")
 	_check_area(sample, area, axis)
+	material = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness)
 	held = []
 	if bonded:
 		heights, reach = sample.positions[:, _AXES.index(axis)], _GLUED * sample.radii
@@ -60,7 +61,7 @@ def platens(
 				f"no sphere is within {_GLUED} radii of the {'upper' if held[0] else 'lower'} face of "
 				"the sample: nothing to bond the wall to"
 			)
-	bottom, top = _two_walls(sample, axis, stiffness, shear_stiffness)
+	bottom, top = _two_walls(sample, axis, material)
 	for wall, spheres in zip((bottom, top), held):
 		Ip2_ElasticWallMat_BondedMat_ElasticWallPhys().bond(wall, spheres)
 	return Platens(sample, bottom, top, velocity, ramp, both, area, axis)
@@ -78,9 +79,9 @@ def _check_area(sample, area, axis):
 		)
 
 
-def _two_walls(sample, axis, stiffness, shear_stiffness=0.0):
+def _two_walls(sample, axis, material):
 	"""Body ids of new elastic walls at the lower and the upper face of a sample's box."""
-	material, number = ElasticWallMat(stiffness=stiffness, shearStiffness=shear_stiffness), _AXES.index(axis)
+	number = _AXES.index(axis)
 	O.materials.append(material)
 	return [
 		O.bodies.append(utils.wall(float(face), axis=number, sense=sense, material=material))
@@ -105,7 +106,7 @@ class Platens:
 	def from_scene(cls, sample, area=None, axis="y"):
 		"""The platens on a sample of the current scene, for a scene that was loaded.
 
-		:param sample: as from :meth:`BondedSample.from_scene`
+		:param sample: as from :meth:`bonded.BondedSample.from_scene`
 		:param area: of the loaded face [m²], to be given again where it was given, or where the packing said
 			its shape (a scene does not save it); None: that of the box around the spheres at the start.
 		:param axis: of loading, "x", "y" or "z"
@@ -184,7 +185,13 @@ def servo(
 	:returns: :class:`ServoPlatens`
 	:raises ValueError: legs that are none, numbers out of range. Nothing is appended then.
 	"""
-	legs = _checked_legs(legs)
+	legs, material = _checked_legs(legs), ElasticWallMat(stiffness=stiffness)
+	for kind, target, _ in legs:
+		if kind == "stress" and target < 0:
+			raise ValueError(
+				f"servo: stress target = {target} Pa must not be negative: these walls only push; "
+				"platens(velocity < 0, bonded=True) pull"
+			)
 	_check_area(sample, area, axis)
 	face, height = sample.face(axis) if area is None else area, _height(sample, axis)
 	mass = sum(O.bodies[i].state.mass for i in sample.ids)
@@ -200,7 +207,7 @@ def servo(
 			velocity=velocity, failure=failure, mass=0.5 * mass, dashpot=impedance * face
 		) for sense in (1, -1)
 	]
-	return ServoPlatens(sample, walls, *_two_walls(sample, axis, stiffness), area, axis)
+	return ServoPlatens(sample, walls, *_two_walls(sample, axis, material), area, axis)
 
 
 def _height(sample, axis):
@@ -262,13 +269,13 @@ class Confinement:
 def confine(sample, pressure=None, ramp=1e-4, velocity=1.0, axes="xz", stiffness=100e9):
 	"""Walls on the sides of a prism: with a pressure that servos keep (triaxial test), or fixed (oedometric test).
 
-	:param sample: :class:`BondedSample`
+	:param sample: :class:`bonded.BondedSample`
 	:param pressure: on these walls [Pa], compression positive; None: they stand still.
 	:param ramp: time over which the pressure grows [s]; some ten times that of a wave through the sample.
 	:param velocity: largest speed of the walls [m/s].
 	:param axes: across which there are walls, of "x", "y", "z".
 	:param stiffness: of the walls, as for :func:`platens`.
-	:returns: :class:`Confinement`; hand it to :func:`engines`.
+	:returns: :class:`Confinement`; hand it to :func:`bonded.engines`.
 	:raises ValueError: a pressure that is not positive, unknown axes. Nothing is appended then.
 
 	Limits: the walls are smooth and rigid, so the sides stay plane; the pressure is that on the faces of the box at
@@ -276,12 +283,17 @@ def confine(sample, pressure=None, ramp=1e-4, velocity=1.0, axes="xz", stiffness
 	"""
 	for axis in axes:
 		_check_area(sample, None, axis)
+	if len(set(axes)) != len(axes) or not axes:
+		raise ValueError(f"axes = '{axes}' must name each axis once")
 	if pressure is not None and not (pressure > 0 and math.isfinite(pressure)):
 		raise ValueError(f"pressure = {pressure} Pa must be positive and finite; None holds the walls")
+	ElasticWallMat(stiffness=stiffness)  # complains before anything is appended
 	around = {}
 	for axis in axes:
 		if pressure is None:
-			around[axis] = ServoPlatens(sample, [], *_two_walls(sample, axis, stiffness), None, axis)
+			around[axis] = ServoPlatens(
+				sample, [], *_two_walls(sample, axis, ElasticWallMat(stiffness=stiffness)), None, axis
+			)
 		else:
 			around[axis] = servo(sample, [("stress", pressure, ramp)], velocity, axis, None, stiffness)
 	return Confinement(around)
@@ -301,10 +313,13 @@ def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffn
 	:returns: :class:`ServoPlatens` along y with the walls as ``confinement``
 	:raises ValueError: numbers out of range. Nothing is appended then.
 	"""
-	if not (strain > 0 and duration > 0 and ramp > 0):
-		raise ValueError(
-			f"strain = {strain} [-], duration = {duration} s and ramp = {ramp} s must be positive"
-		)
+	for name, value, unit in (
+		("pressure", pressure, "Pa"), ("strain", strain, "[-]"), ("duration", duration, "s"),
+		("ramp", ramp, "s"),
+		("velocity", velocity, "m/s"), ("stiffness", stiffness, "Pa")
+	):
+		if not (value > 0 and math.isfinite(value)):
+			raise ValueError(f"{name} = {value} {unit} must be positive and finite")
 	around = confine(sample, pressure, ramp, velocity, "xz", stiffness)
 	press = servo(
 		sample, [("stress", pressure, ramp), ("strain", strain, duration)], velocity, "y", None, stiffness

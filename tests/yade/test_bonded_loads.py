@@ -74,6 +74,71 @@ def test_load_control_stops_where_the_sample_gives_way():
 	assert press.strain < 0.05  # without the stop the walls would have met the rubble at 1 m/s
 
 
+def test_legs_appended_later_begin_then():
+	sample = specimen()
+	press = ddem.bonded.servo(sample, [("strain", 2e-4, 2e-4)], velocity=1.0)
+	run(press, 4e-4)
+	assert press.done
+	for wall in press.engines:
+		wall.kinds, wall.targets = wall.kinds + ["displacement"], wall.targets + [0.5e-3 * press.height]
+		wall.durations = wall.durations + [2e-4]
+	speeds = []
+	for _ in range(30):
+		O.run(int(1e-5 / O.dt), True)
+		speeds.append(abs(press.engines[0].speed))
+	assert max(speeds) == pytest.approx(0.5 * 8e-4 * press.height * math.pi / 2 / 2e-4, rel=0.02)
+	assert press.strain == pytest.approx(1e-3, rel=1e-9)
+
+
+def test_time_stands_still_for_a_dead_wall():
+	sample = specimen()
+	press = ddem.bonded.servo(sample, [("strain", 1e-3, 2e-4)], velocity=1.0)
+	run(press, 1e-4)
+	for dead in (True, False):
+		for wall in press.engines:
+			wall.dead = dead
+			O.bodies[wall.ids[0]].state.vel = (0, 0, 0)
+		O.run(int(1e-4 / O.dt) if dead else 3, True)
+	assert press.engines[0].speed < 0.1
+	O.run(int(1.1e-4 / O.dt), True)
+	assert press.strain == pytest.approx(1e-3, rel=1e-9)
+
+
+def pulled(velocity, target, **material):
+	"""Bonded walls that pull by force, and their sample."""
+	sample = specimen(size=(0.01, 0.012, 0.01), **material)
+	walls = ddem.bonded.platens(sample, velocity=-0.1, bonded=True)
+	servos = [
+		ServoWall(
+			ids=[wall], direction=(0, sense, 0), kinds=["force"], targets=[target * walls.area],
+			durations=[2e-4], velocity=velocity, failure=0.5, mass=1e-3, dashpot=1e3
+		) for wall, sense in ((walls.bottom, 1), (walls.top, -1))
+	]
+	walls.engines = servos
+	run(walls, 3e-4)
+	return sample, walls, servos
+
+
+def test_failure_in_tension_is_one_of_the_sample():
+	sample, walls, servos = pulled(velocity=0.004, target=-5e6)  # too slow to follow
+	assert walls.stress < 0 and not any(wall.failed for wall in servos)
+	sample, walls, servos = pulled(velocity=2.0, target=-50e6, cohesion=2e6)
+	assert sample.broken_fraction > 0.05 and all(wall.failed for wall in servos)
+
+
+def test_a_servo_before_the_interactions_is_refused():
+	sample = specimen(size=(0.008, 0.008, 0.008))
+	press = ddem.bonded.servo(sample, [("stress", 5e6, 2e-4)], velocity=1.0)
+	engines = ddem.bonded.engines()
+	O.engines = engines[:1] + press.engines + engines[1:]
+	O.dt = ddem.bonded.time_step(0.5)
+	with pytest.raises(RuntimeError, match="ServoWall must come between InteractionLoop and NewtonIntegrator"):
+		ddem.bonded.check()
+	with pytest.raises(RuntimeError, match="ServoWall comes before InteractionLoop"):
+		O.step()
+		O.step()
+
+
 def test_a_wall_that_has_not_met_the_sample_has_not_failed():
 	sample = specimen()
 	press = ddem.bonded.servo(sample, [("stress", 5e6, 1e-4)], velocity=2.0, failure=0.5)
@@ -150,6 +215,7 @@ def test_platens_along_any_axis(axis):
 	(dict(legs=[("force", 1, 1)]), "must be \\('stress', target"),
 	(dict(legs=[("stress", 1e6, -1)]), "duration = -1 s must be positive"),
 	(dict(legs=[("stress", math.nan, 1)]), "target = nan"),
+	(dict(legs=[("stress", 1e6, 1), ("stress", -1e6, 1)]), "target = -1000000.0 Pa must not be negative"),
 	(dict(legs=[("stress", 1e6, 1)], velocity=0), "velocity = 0 m/s must be positive"),
 	(dict(legs=[("stress", 1e6, 1)], failure=1), "failure = 1"),
 	(dict(legs=[("stress", 1e6, 1)], axis="w"), "axis = 'w' is unknown"),
@@ -167,8 +233,16 @@ def test_bad_pressures():
 	sample = specimen(size=(0.008, 0.008, 0.008))
 	with pytest.raises(ValueError, match="pressure = -1 Pa must be positive"):
 		ddem.bonded.confine(sample, -1)
-	with pytest.raises(ValueError, match="strain = 0"):
-		ddem.bonded.triaxial(sample, 1e6, strain=0, duration=1e-3)
+	bodies = len(O.bodies)
+	for arguments, words in (
+		(dict(strain=0, duration=1e-3), "strain = 0"), (dict(strain=math.inf, duration=1e-3), "strain = inf"),
+		(dict(strain=0.01, duration=math.inf), "duration = inf s"),
+	):
+		with pytest.raises(ValueError, match=words):
+			ddem.bonded.triaxial(sample, 1e6, **arguments)
+	with pytest.raises(ValueError, match="axes = 'xx' must name each axis once"):
+		ddem.bonded.confine(sample, 1e6, axes="xx")
+	assert len(O.bodies) == bodies
 
 
 def test_engine_with_columns_that_differ():

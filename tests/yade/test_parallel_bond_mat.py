@@ -5,8 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from yade import BondedMat, O, ParallelBondMat, Vector3, ddem, utils
+from yade import BondedInteractionLoop, BondedMat, InteractionLoop, O, ParallelBondMat, Vector3, ddem, utils
 from yade import Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, SofteningBondMat
+from yade.ddem.energy import EnergyBalance
 
 
 def specimen(material, test, **more):
@@ -51,6 +52,26 @@ def test_radius_factor_scales_stiffness_as_its_square():
 	assert phys.kn == pytest.approx(50e9 * math.pi * 1e-6 / 5e-3, rel=1e-12)
 	assert phys.kb == pytest.approx(50e9 * math.pi * 1e-12 / 4 / 5e-3, rel=1e-12)
 	assert phys.strength == {"tension": 30e6, "cohesion": 100e6, "friction": 0.0, "moments": 1.0}
+
+
+def test_thin_bonds_leave_contacts_that_the_time_step_knows():
+	"""Bonds of 0.3 of the radius are eleven times as soft as the contacts that they leave."""
+	O.reset()
+	O.materials.append(
+		ParallelBondMat(label="rock", young=50e9, radiusFactor=0.3, tensileStrength=1e6, cohesion=2e6)
+	)
+	shape = ddem.packing.Ball((0, 0, 0), 8e-3)
+	sample = ddem.bonded.append(ddem.packing.fill(shape, 0.8e-3, 2e-3, seed=2, fails=300), "rock")
+	for i in sample.ids:
+		state = O.bodies[i].state
+		state.vel = Vector3(-10 if state.pos[0] > 0 else 10, 0, 0)
+	O.engines = ddem.bonded.engines()
+	O.dt = ddem.bonded.time_step(0.8)
+	book = EnergyBalance()
+	O.run(500, True)
+	assert sample.broken_fraction > 0.3
+	assert O.dt < ddem.bonded.critical_time_step()
+	assert book.error < 0.02
 
 
 def row_of_three(first, second, third, **between):
@@ -104,6 +125,34 @@ def test_criteria_that_differ_need_a_material_between():
 def test_bad_materials_between(between, words):
 	with pytest.raises(ValueError, match=words):
 		row_of_three(stone(), mortar(), BondedMat(label="seam", between=between))
+
+
+@pytest.mark.parametrize("loop", [BondedInteractionLoop, InteractionLoop])
+def test_contacts_of_bad_materials_between_stop_the_run(loop):
+	O.reset()
+	for label in ("stone", "mortar"):
+		O.materials.append(BondedMat(label=label))
+	for label in ("seam", "joint"):
+		O.materials.append(BondedMat(label=label, between=["stone", "mortar"]))
+	for x, label in ((0, "stone"), (1.99e-3, "mortar")):
+		O.bodies.append(utils.sphere(Vector3(x, 0, 0), 1e-3, material=label))
+	engines = ddem.bonded.engines()
+	ours = engines[2]
+	engines[2] = loop(ours.geomDispatcher.functors, ours.physDispatcher.functors, ours.lawDispatcher.functors)
+	O.engines = engines
+	O.dt = 1e-9
+	with pytest.raises(ValueError, match="both between"):
+		ddem.bonded.check()
+	if loop is BondedInteractionLoop:
+		with pytest.raises(RuntimeError, match="both between"):
+			O.step()
+	else:
+		O.step()  # says so and pauses; it ended the program
+	O.reset()
+	O.materials.append(BondedMat(label="seam", between=["stone", "mortar"]))
+	O.engines = ddem.bonded.engines()
+	with pytest.raises(ValueError, match="O.materials has no BondedMat 'stone'"):
+		ddem.bonded.check()
 
 
 def test_two_materials_between_the_same_are_refused():

@@ -106,6 +106,35 @@ def test_a_biaxial_test_of_an_elastic_block():
 	assert block.stress[..., 0].mean() == pytest.approx(-10e6, rel=0.01)
 
 
+def test_a_platen_that_lags_behind_has_not_failed():
+	block = block_of(elastic())
+	press = ddem.servo(block, [("stress", 20e6, 1e-3)], velocity=0.005, failure=0.9)
+	O.engines = [ForceResetter(), *press.engines, DeformableEngine(damping=0.1)]
+	O.dt = ddem.time_step(0.8)
+	run_to(1e-3)
+	assert 1e6 < press.stress_top < 15e6
+	run_to(3e-3)
+	assert not press.failed
+	assert press.stress_top == pytest.approx(20e6, rel=1e-3)  # late, but there
+
+
+def test_legs_appended_later_begin_then():
+	block = block_of(elastic())
+	press = ddem.servo(block, [("strain", 1e-4, 2e-4)], velocity=1)
+	O.engines = [ForceResetter(), *press.engines, DeformableEngine(damping=0.1)]
+	O.dt = ddem.time_step(0.8)
+	run_to(4e-4)
+	platen = press.platen
+	platen.kinds, platen.targets = platen.kinds + ["displacement"], platen.targets + [3e-4 * press.height]
+	platen.durations = platen.durations + [2e-4]
+	fastest = 0
+	while O.time < 7e-4:
+		steps(1)
+		fastest = max(fastest, platen.speed)
+	assert fastest == pytest.approx(2e-4 * press.height * math.pi / 2 / 2e-4, rel=0.02)
+	assert press.strain == pytest.approx(3e-4, rel=1e-6)
+
+
 def test_a_platen_stops_where_the_sample_gives_way():
 	"""More stress than a metal bears: it yields, the platen runs at its limit, and stops."""
 	O.materials.append(VonMisesMat(label="m", yieldStress=100e6))

@@ -139,6 +139,10 @@ private:
 	static double
 	ductility(const char* energy, double given, double modulus, double stress, const BondMaking& bond)
 	{
+		if (!std::isfinite(stress))
+			throw std::invalid_argument(
+			        "SofteningBond: without bondFrictionAngle the tensileStrength must be finite: "
+			        "such a bond would never break in tension");
 		const double stored = 0.5 * stress * stress * bond.length / modulus; // per area, at its strength
 		if (given > 1.001 * stored) return given / stored;
 		std::ostringstream text;
