@@ -29,7 +29,7 @@ def pressure(
 	:param follower: True: the load follows the edges as they turn and stretch; False: a dead load of the beginning.
 	:param profile: function of the arrays x, y [m] of nodes in the mesh's coordinates that gives factors [-],
 		linear along each edge; None: uniform.
-	:raises ValueError: a value that is not finite, no load at all, a negative ramp, ramp and course together, a
+	:raises ValueError: a value that is not finite, a negative ramp, ramp and course together, a
 		course that is not of rising times, a profile that does not give a number for each node; edges that are
 		none, see :meth:`Block.edges`.
 	"""
@@ -111,9 +111,17 @@ def as_course(course):
 
 	:raises ValueError: other than pairs of finite numbers with rising times.
 	"""
-	table = np.array([] if course is None else course, float).reshape(-1, 2)
+	if course is None:
+		return [], []
+	wrong = ValueError(f"course = {course} must be pairs of rising times [s] and factors [-], all finite")
+	try:
+		table = np.array(course, float)
+	except (TypeError, ValueError):
+		raise wrong from None
+	if table.ndim != 2 or table.shape[1:] != (2,) or len(table) == 0:
+		raise wrong
 	if not np.isfinite(table).all() or (np.diff(table[:, 0]) <= 0).any():
-		raise ValueError(f"course = {course} must be pairs of rising times [s] and factors [-], all finite")
+		raise wrong
 	return table[:, 0].tolist(), table[:, 1].tolist()
 
 

@@ -81,7 +81,9 @@ def on_edges(block, edges, course=None):
 			owner[corners[k], corners[(k + 1) % 3]] = row
 	tractions, found = [], False
 	for first, second in pairs.tolist():
-		ends = rows[first], rows[second]
+		ends = rows.get(first), rows.get(second)
+		if ends not in owner and ends[::-1] not in owner:
+			raise ValueError(f"on_edges: bodies #{first} and #{second} are no edge of this block")
 		row = owner[ends] if ends in owner else owner[ends[::-1]]
 		start, end = ends if ends in owner else ends[::-1]
 		along = nodes[end] - nodes[start]

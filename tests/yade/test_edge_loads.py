@@ -435,3 +435,10 @@ def test_dashpots_leave_the_critical_step_as_it_is_and_a_run_at_it_is_stable():
 	first = np.abs(block.velocities).max()
 	O.run(20000, True)
 	assert np.abs(block.velocities).max() < 1e-2 * first
+
+
+@pytest.mark.parametrize("course", [[], (1, 2), [0, 1, 2], [(0, 1, 2)], [(0, "a")], [(1, 1), (0, 0)], [(0, np.nan)]])
+def test_courses_that_are_none(course):
+	block = ddem.append(mesh.rectangle(0.02, 0.02, size=0.01), elastic())
+	with pytest.raises(ValueError, match="must be pairs of rising times"):
+		ddem.pressure(block, "top", 1e6, course=course)

@@ -221,3 +221,11 @@ def test_it_cannot_be_changed_once_running():
 	O.bodies[block.triangle_ids[0]].shape.initialStress = []
 	with pytest.raises(ValueError, match="initialStress is the stress .* at the start"):
 		O.step()
+
+
+def test_pairs_that_are_no_edge_are_named():
+	block = ddem.append(mesh.rectangle(0.02, 0.02, size=0.005), elastic(), initial_stress=(*PLANE, -4e6))
+	far = [int(block.boundary("top")[0]), int(block.boundary("bottom")[0])]
+	for pair in (far, [far[0], 10**6]):
+		with pytest.raises(ValueError, match=f"#{pair[0]}|#{pair[1]}"):
+			ddem.initial_stress.on_edges(block, [pair])
