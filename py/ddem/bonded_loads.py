@@ -13,6 +13,8 @@ from yade import (
 	ServoWall, Vector3, Wall, utils
 )
 
+from .loading import checked_legs
+
 _AXES = "xyz"
 _GLUED = 1.1  # distance of a centre from a wall, in radii, up to which it is bonded to it (tutorial of ESyS-Particle)
 
@@ -185,7 +187,7 @@ def servo(
 	:returns: :class:`ServoPlatens`
 	:raises ValueError: legs that are none, numbers out of range. Nothing is appended then.
 	"""
-	legs, material = _checked_legs(legs), ElasticWallMat(stiffness=stiffness)
+	legs, material = checked_legs(legs), ElasticWallMat(stiffness=stiffness)
 	for kind, target, _ in legs:
 		if kind == "stress" and target < 0:
 			raise ValueError(
@@ -213,19 +215,6 @@ def servo(
 def _height(sample, axis):
 	"""Length of a sample's box along an axis, "x", "y" or "z" [m]."""
 	return float((sample.upper - sample.lower)[_AXES.index(axis)])
-
-
-def _checked_legs(legs):
-	legs = [tuple(leg) for leg in legs]
-	for leg in legs:
-		if len(leg) != 3 or leg[0] not in ("stress", "strain"):
-			raise ValueError(
-				f"servo: the leg {leg} must be ('stress', target [Pa], duration [s]) or ('strain', "
-				"target [-], duration [s])"
-			)
-	if not legs:
-		raise ValueError("servo: legs is empty; give at least one, such as ('stress', 10e6, 1e-3)")
-	return legs
 
 
 class ServoPlatens(Platens):

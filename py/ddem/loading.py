@@ -170,6 +170,15 @@ def servo(block, legs, velocity, lateral="free", failure=0.0, top="top", bottom=
 		raise ValueError(
 			f"lateral = '{lateral}' is unknown; use 'fixed' (rough platens) or 'free' (smooth platens)"
 		)
+	legs = checked_legs(legs)
+	return ServoPlatens(block, legs, velocity, lateral, failure, top, bottom)
+
+
+def checked_legs(legs):
+	"""Legs of a course of stresses and strains as a list of tuples.
+
+	:raises ValueError: naming the leg that is none
+	"""
 	legs = [tuple(leg) for leg in legs]
 	for leg in legs:
 		if len(leg) != 3 or leg[0] not in ("stress", "strain"):
@@ -179,7 +188,7 @@ def servo(block, legs, velocity, lateral="free", failure=0.0, top="top", bottom=
 			)
 	if not legs:
 		raise ValueError("servo: legs is empty; give at least one, such as ('stress', 10e6, 1e-3)")
-	return ServoPlatens(block, legs, velocity, lateral, failure, top, bottom)
+	return legs
 
 
 class ServoPlatens(Platens):
