@@ -6,8 +6,10 @@ import math
 import numpy as np
 import pytest
 
+import yade
 from yade import (
-	BondedMat, ElasticWallMat, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom, InteractionLoop,
+	Bo1_Sphere_Aabb, BondedMat, ElasticWallMat, ForceResetter, FrictMat, Ig2_Sphere_Sphere_ScGeom,
+	InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, NewtonIntegrator, O, Quaternion, RampedTranslationEngine, Vector3,
 	ViscousBodyDamping, ddem, utils
 )
@@ -572,3 +574,60 @@ class TestBadInput:
 	def test_engine_parameters(self, engine, change):
 		with pytest.raises(ValueError, match="-1.0* .*must not be negative"):
 			engine(**change)
+
+
+class TestOtherModels:
+	"""What the manual's table says of YADE's own bonded materials: asked of YADE's own contacts."""
+
+	RADIUS, YOUNG = 1e-3, 1e9
+
+	def contact(self, material, ip2, law):
+		O.reset()
+		O.materials.append(material)
+		for x in (0, 2 * self.RADIUS):
+			O.bodies.append(utils.sphere(Vector3(x, 0, 0), self.RADIUS, material=material))
+		O.engines = [
+			ForceResetter(),
+			InsertionSortCollider([Bo1_Sphere_Aabb(aabbEnlargeFactor=1.5)]),
+			InteractionLoop([Ig2_Sphere_Sphere_ScGeom(interactionDetectionFactor=1.5)], [ip2], [law]),
+			NewtonIntegrator(),
+		]
+		O.dt = 1e-9
+		O.step()
+		return O.interactions[0, 1].phys
+
+	def ours(self, ratio, **more):
+		O.reset()
+		O.materials.append(BondedMat(label="rock", young=self.YOUNG, poisson=1 / (2 * ratio) - 1, **more))
+		spheres = packing.Packing([(0, 0, 0), (2 * self.RADIUS, 0, 0)], [self.RADIUS] * 2)
+		bonded.append(spheres, "rock", gap=1e-6)
+		return O.interactions[0, 1].phys
+
+	def test_jcfpm(self):
+		material = yade.JCFpmMat(
+			young=self.YOUNG, poisson=0.4, cohesion=1e6, tensileStrength=2e6, frictionAngle=0.5,
+			density=2600
+		)
+		theirs = self.contact(
+			material, yade.Ip2_JCFpmMat_JCFpmMat_JCFpmPhys(cohesiveTresholdIteration=1),
+			yade.Law2_ScGeom_JCFpmPhys_JointedCohesiveFrictionalPM()
+		)
+		ours = self.ours(ratio=0.4)
+		assert ours.kn == pytest.approx(math.pi / 2 * theirs.kn, rel=1e-6)
+		assert ours.ks / ours.kn == pytest.approx(theirs.ks / theirs.kn, rel=1e-6)
+		area = math.pi * self.RADIUS**2
+		assert (theirs.FnMax, theirs.FsMax) == (pytest.approx(2e6 * area), pytest.approx(1e6 * area))
+
+	def test_cpm(self):
+		material = yade.CpmMat(
+			young=self.YOUNG, poisson=0.4, sigmaT=1e6, frictionAngle=0.5, epsCrackOnset=1e-4,
+			relDuctility=30
+		)
+		theirs = self.contact(
+			material, yade.Ip2_CpmMat_CpmMat_CpmPhys(cohesiveThresholdIter=1),
+			yade.Law2_ScGeom_CpmPhys_Cpm()
+		)
+		ours = self.ours(ratio=0.4)
+		assert ours.kn == pytest.approx(theirs.kn, rel=1e-6)
+		assert ours.ks == pytest.approx(theirs.ks, rel=1e-6)
+		assert (theirs.undamagedCohesion, theirs.epsCrackOnset) == (1e6, 1e-4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from yade import BondedInteractionLoop, BondedMat, InteractionLoop, O, ParallelBondMat, Vector3, ddem, utils
-from yade import Ip2_BondedMat_BondedMat_BondedPhys, Law2_ScGeom_BondedPhys_MohrCoulomb, SofteningBondMat
+from yade import Law2_ScGeom_BondedPhys_MohrCoulomb, SofteningBondMat
 from yade.ddem.energy import EnergyBalance
 
 
@@ -232,4 +232,3 @@ def test_the_old_name_of_the_law_tells_the_new_one():
 	for arguments in ({}, {"convention": "esys"}):
 		with pytest.raises(RuntimeError, match="is now Law2_ScGeom_BondedPhys_Bonded"):
 			Law2_ScGeom_BondedPhys_MohrCoulomb(**arguments)
-	assert Ip2_BondedMat_BondedMat_BondedPhys  # has kept its own

@@ -159,7 +159,7 @@ def test_esys_knows_mohr_and_coulomb_only(kind):
 		O.step()
 
 
-def test_a_material_that_does_not_say_its_criterion_is_one_of_ours():
+def test_each_material_tells_its_criterion():
 	assert BondedMat().criterion == "MohrCoulomb"
 	assert ParallelBondMat().criterion == "ParallelBond"
 	assert SofteningBondMat().criterion == "SofteningBond"
