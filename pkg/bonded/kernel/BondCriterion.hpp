@@ -9,7 +9,7 @@
 //     Memory<Number>             numbers that every bond remembers, and their names, the energy that it has taken as
 //                                "lost"; NoBondMemory where it has none
 //     strengthOf(parameters, bond), scaled(parameters, factor), weaker(parameters, others), radius(parameters, bond)
-//     advance(strength, memory, section, stiffness, load)   one step; may take from the load
+//     advance(strength, memory, section, stiffness, load)   one step; with a memory it may take from the load
 //     mode(strength, memory, stress)                        how a bond broke
 //
 // Its loops are compiled from a template; a scene runs those of the criteria that its bonds have. The material class

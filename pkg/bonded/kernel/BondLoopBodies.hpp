@@ -21,7 +21,8 @@ template <class Unit, class Number, BondConvention convention, class Criterion>
 	using Strength      = typename Criterion::template Strength<Number>;
 	using Memory        = typename Criterion::template Memory<Number>;
 	constexpr auto row  = std::ptrdiff_t(sizeof(BondSystem::Row) / sizeof(double));
-	bool           over = false;
+	constexpr bool remembers = Memory::names.size() > 0; // only then a bond may lose of its loads
+	bool           over      = false;
 	for (std::size_t j = begin; j < end; j += L::width) {
 		const auto constant = [&](int which) { return L::load(a.constant[which] + j); };
 		const auto frame = [&](int which) -> SpaceRotation<Number> {
@@ -60,16 +61,18 @@ template <class Unit, class Number, BondConvention convention, class Criterion>
                                 strength, memory, BondSectionOf<Number>(bond.sectionRadius), bond.stiffness, load);
 		};
 		BondLoadsOf<Number> loads;
-		if constexpr (convention == BondConvention::Esys) {
-			loads = esysBondLoads(bond, branch, q1, q2);
+		if constexpr (remembers) loads = bondLoads(bond, branch, q1, q2, advance);
+		else { // who takes nothing looks afterwards: between the others there are not registers enough, a seventh
+			loads = convention == BondConvention::Esys ? esysBondLoads(bond, branch, q1, q2)
+			                                           : bondLoads(bond, branch, q1, q2);
 			advance(loads.section);
-		} else loads = bondLoads(bond, branch, q1, q2, advance);
+		}
 		const auto beyond = !(answer.overload <= Number(0.)); // so it notices what is not a number, too
 		if (any(beyond)) {
 			over = true;
 			L::store(a.overload + j, answer.overload);
 		}
-		if constexpr (Memory::names.size() > 0) {
+		if constexpr (remembers) {
 			toNumbers(memory, numbers);
 			for (std::size_t k = 0; k < Memory::names.size(); k++)
 				L::store(a.memory[k] + j, numbers[k]);
