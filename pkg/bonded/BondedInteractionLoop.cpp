@@ -387,11 +387,26 @@ void BondedInteractionLoop::followContact(std::size_t place)
 	                     pair.phys->contactNow(massOf(search.firstOf(place)), massOf(search.secondOf(place))),
 	                     {},
 	                     false });
+	ordered = false;
+}
+
+/// Sums must not depend on when contacts have begun: after loading nobody knows.
+void BondedInteractionLoop::orderContacts()
+{
+	if (std::exchange(ordered, true)) return;
+	const auto rows = [this](const Contact& contact) {
+		const auto place = size_t(contact.pair);
+		return std::make_pair(search.firstOf(place), search.secondOf(place));
+	};
+	std::sort(contacts.begin(), contacts.end(), [&](const Contact& a, const Contact& b) {
+		return rows(a) < rows(b);
+	});
 }
 
 void BondedInteractionLoop::advance(Law& bondLaw)
 {
 	const bool        esys   = bondLaw.bondConvention() == ddem::BondConvention::Esys, book = scene->trackEnergy;
+	orderContacts();
 	const std::size_t before = contacts.size();
 	parted.clear();
 	if (esys) breakOverloaded(bondLaw, overloaded); // ESyS-Particle tests the loads of the last step

@@ -122,6 +122,7 @@ private:
 	void addLoads(std::int32_t first, std::int32_t second, const ddem::ContactLoads& loads);
 	void follow(Pair pair, std::int32_t first, std::int32_t second);
 	void followContact(std::size_t pair);
+	void orderContacts();
 	void breakOverloaded(Law& law, const std::vector<std::int32_t>& bonds);
 	bool constantsHold(size_t bond) const;
 	void writeBack();
@@ -144,7 +145,8 @@ private:
 		ddem::ContactLoads loads;         ///< of the last step
 		bool               ahead = false; ///< whether it has made a step since its object was written
 	};
-	std::vector<Contact>                  contacts; ///< in order of their beginning
+	std::vector<Contact>                  contacts; ///< by rows, but for those that have begun in this step
+	bool                                  ordered = true;   ///< whether they are
 	std::vector<std::int32_t>             fresh;    ///< pairs that have begun to touch in this step
 	std::vector<Parted>                   parted;       ///< bonds that have broken in this step
 	bool                                  following = false; ///< whether pairs of spheres are followed here

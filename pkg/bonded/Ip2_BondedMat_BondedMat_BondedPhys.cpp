@@ -4,6 +4,7 @@
 #include <pkg/bonded/BondedInteractionLoop.hpp>
 #include <pkg/ddem/SingleProcess.hpp>
 
+#include <limits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -63,19 +64,49 @@ namespace {
 	}
 
 	/// Geometry of the pair, as Ig2_Sphere_Sphere_ScGeom or …6D would have made it and will update it.
-	shared_ptr<ScGeom6D> makeGeometry(
-	        const Particle& a, const Particle& b, const Scene& scene, const shared_ptr<Interaction>& interaction)
+	/// Period of the cell in which the second of two bodies is closest to the first; none without a cell.
+	Vector3i nearestPeriod(const Scene& scene, const Vector3r& branch)
 	{
-		const Vector3r branch   = b.body->state->pos - a.body->state->pos;
+		Vector3i nearest = Vector3i::Zero();
+		if (!scene.isPeriodic) return nearest;
+		const Vector3r periods = -(scene.cell->hSize.inverse() * branch);
+		const Vector3i around(
+		        int(std::lround(periods[0])), int(std::lround(periods[1])), int(std::lround(periods[2])));
+		Real           least = std::numeric_limits<Real>::infinity();
+		for (int k = 0; k < 27; k++) { // in a sheared cell it may be one further
+			const Vector3i tried  = around + Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+			const Real     length = (branch + scene.cell->intrShiftPos(tried)).norm();
+			if (length < least) std::tie(least, nearest) = std::make_pair(length, tried);
+		}
+		return nearest;
+	}
+
+	/// In a narrow cell a bond could as well go to another image.
+	void requireRoom(const Scene& scene, const Vector2i& pair, Real length)
+	{
+		const Matrix3r across = scene.cell->hSize.inverse(); // a row is one over the height across two sides
+		const Real     height = 1 / across.rowwise().norm().maxCoeff();
+		if (2 * length < height) return;
+		std::ostringstream text;
+		text << "they are " << length << " m apart, which is half or more of the periodic cell's " << height
+		     << " m: make the cell wider, or the spheres smaller";
+		refuse(pair, text.str());
+	}
+
+	/// \param branch from the centre of one to that of the other, or of its periodic image
+	shared_ptr<ScGeom6D> makeGeometry(
+	        const Particle& a, const Particle& b, const Scene& scene, const shared_ptr<Interaction>& interaction,
+	        const Vector3r& branch)
+	{
 		const Real     distance = branch.norm();
+		const Vector3r shift    = branch - (b.body->state->pos - a.body->state->pos);
 		auto           geom     = boost::make_shared<ScGeom6D>();
 		geom->radius1           = a.sphere->radius;
 		geom->radius2           = b.sphere->radius;
 		geom->penetrationDepth  = geom->radius1 + geom->radius2 - distance;
 		geom->contactPoint
 		        = a.body->state->pos + (geom->radius1 - geom->penetrationDepth / 2) / distance * branch;
-		geom->precompute(
-		        *a.body->state, *b.body->state, &scene, interaction, branch / distance, true, Vector3r::Zero());
+		geom->precompute(*a.body->state, *b.body->state, &scene, interaction, branch / distance, true, shift);
 		geom->initRotations(*a.body->state, *b.body->state);
 		return geom;
 	}
@@ -131,7 +162,8 @@ namespace {
 	/// A bond that passed all checks.
 	struct Planned {
 		Planned(const Particle& first, const Particle& second, const shared_ptr<BondedPhys>& made,
-		        const Breaking& breaking, const ddem::BondMaking& making, Real factor)
+		        const Breaking& breaking, const ddem::BondMaking& making, Real factor, const Vector3i& inPeriod,
+		        const Vector3r& between)
 		        : a(first)
 		        , b(second)
 		        , phys(made)
@@ -139,6 +171,8 @@ namespace {
 		        , strength(criterion->strengthOf(
 		                  factor == 1 ? breaking.values : criterion->scaled(breaking.values, factor), making))
 		        , radius(criterion->radius(breaking.values, making))
+		        , period(inPeriod)
+		        , branch(between)
 		{
 		}
 		Particle                   a, b;
@@ -146,6 +180,8 @@ namespace {
 		const ddem::BondCriterion* criterion;
 		ddem::BondStrength         strength;
 		Real                       radius; ///< of the section [m]
+		Vector3i                   period; ///< of the cell in which the second is meant
+		Vector3r                   branch; ///< to it
 	};
 
 	std::vector<Real> checkedFactors(const boost::python::object& given, size_t count)
@@ -203,9 +239,6 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 {
 	Scene& current = *Omega::instance().getScene();
 	requireSingleProcess(current);
-	if (current.isPeriodic)
-		throw std::invalid_argument(
-		        "bonds across periodic boundaries are not supported: set O.periodic = False");
 	checkMaterialsBetween(current);
 	const std::vector<Real> factor = checkedFactors(factors, pairs.size());
 	std::set<std::pair<int, int>> seen;
@@ -216,8 +249,12 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 		if (pair[0] == pair[1]) refuse(pair, "a body cannot be bonded to itself");
 		const auto [first, second] = std::minmax(pair[0], pair[1]);
 		const Particle a = checkedParticle(current, pair, first), b = checkedParticle(current, pair, second);
-		const Real     length = (b.body->state->pos - a.body->state->pos).norm();
+		Vector3r       branch = b.body->state->pos - a.body->state->pos;
+		const Vector3i period = nearestPeriod(current, branch);
+		if (current.isPeriodic) branch += current.cell->intrShiftPos(period);
+		const Real length = branch.norm();
 		if (!(length > 0)) refuse(pair, "they have the same centre");
+		if (current.isPeriodic) requireRoom(current, pair, length);
 		const shared_ptr<Interaction> old = current.interactions->find(first, second);
 		if (!seen.insert({ first, second }).second || isBonded(old)) refuse(pair, "they are bonded already");
 		try {
@@ -228,7 +265,7 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 				phys->elasticity(), length, a.sphere->radius, b.sphere->radius
 			};
 			planned.push_back({ a, b, phys, strengths.of(*a.material, *b.material), making,
-			                    factor.empty() ? 1 : factor[i] });
+			                    factor.empty() ? 1 : factor[i], period, branch });
 		} catch (const std::invalid_argument& error) {
 			refuse(pair, error.what());
 		}
@@ -238,11 +275,12 @@ void Ip2_BondedMat_BondedMat_BondedPhys::bond(const std::vector<Vector2i>& pairs
 		if (const auto old = current.interactions->find(first, second))
 			current.interactions->erase(first, second, old->linIx);
 		auto interaction  = boost::make_shared<Interaction>(first, second);
-		interaction->geom = makeGeometry(plan.a, plan.b, current, interaction);
+		interaction->cellDist = plan.period;
+		interaction->geom     = makeGeometry(plan.a, plan.b, current, interaction, plan.branch);
 		interaction->phys = plan.phys;
 		plan.phys->join(
 		        *plan.criterion, plan.strength, plan.radius, *plan.a.body->state, *plan.b.body->state,
-		        plan.b.body->state->pos - plan.a.body->state->pos);
+		        plan.branch);
 		interaction->iterMadeReal = current.iter;
 		current.interactions->insert(interaction);
 	}

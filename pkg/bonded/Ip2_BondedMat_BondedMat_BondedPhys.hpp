@@ -27,8 +27,9 @@ public:
 			"Bond pairs of spheres, given as a list of (id1, id2), at their present distance and "
 			"orientation, without load. *factors* are of the strength of every pair [-], or None. "
 			"Needs no engines, and bonds need no help from the collider: they exist until they break, "
-			"whatever the gap. ValueError, and nothing bonded, if a pair is not of two different spheres "
-			"of :yref:`BondedMat` or is bonded already.")
+			"whatever the gap. In a periodic cell the closest images are bonded. ValueError, and nothing "
+			"bonded, if a pair is not of two different spheres of :yref:`BondedMat`, is bonded already, or "
+			"is half a periodic cell apart or more.")
 	);
 	// clang-format on
 };

@@ -15,12 +15,21 @@ DDEM_PLUGIN((Law2_ScGeom_BondedPhys_Bonded))
 
 namespace {
 
+	/// From the first body to the second, or to its image where they meet across the border of a periodic cell.
+	Vector3r branchIn(const Scene& scene, const Interaction& I)
+	{
+		const BodyContainer& bodies = *scene.bodies;
+		const Vector3r       branch = bodies[I.getId2()]->state->pos - bodies[I.getId1()]->state->pos;
+		return scene.isPeriodic ? Vector3r(branch + scene.cell->intrShiftPos(I.cellDist)) : branch;
+	}
+
 	/// Work per time of loads of a pair [W], with the velocities of the last half step.
+	/// \param velocity2 of the second one, or of its periodic image
 	Real pairPower(
 	        const Vector3r& force, const Vector3r& moment1, const Vector3r& moment2, const State& state1,
-	        const State& state2)
+	        const State& state2, const Vector3r& velocity2)
 	{
-		return force.dot(state1.vel - state2.vel) + moment1.dot(state1.angVel) + moment2.dot(state2.angVel);
+		return force.dot(state1.vel - velocity2) + moment1.dot(state1.angVel) + moment2.dot(state2.angVel);
 	}
 
 } // namespace
@@ -35,11 +44,7 @@ void Law2_ScGeom_BondedPhys_Bonded::postLoad(Law2_ScGeom_BondedPhys_Bonded&)
 	requireSingleProcess(); // in words here: what is thrown in the loop of InteractionLoop ends the program
 }
 
-Vector3r Law2_ScGeom_BondedPhys_Bonded::branchOf(const Interaction& I) const
-{
-	const Vector3r branch = Body::byId(I.getId2(), scene)->state->pos - Body::byId(I.getId1(), scene)->state->pos;
-	return scene->isPeriodic ? Vector3r(branch + scene->cell->intrShiftPos(I.cellDist)) : branch;
-}
+Vector3r Law2_ScGeom_BondedPhys_Bonded::branchOf(const Interaction& I) const { return branchIn(*scene, I); }
 
 bool Law2_ScGeom_BondedPhys_Bonded::go(shared_ptr<IGeom>& iGeom, shared_ptr<IPhys>& iPhys, Interaction* I)
 {
@@ -128,10 +133,13 @@ ddem::ContactLoads Law2_ScGeom_BondedPhys_Bonded::breakBond(Interaction& I, cons
 	parted->shearStress  = stress.shear;
 	// What the contact does not take over. Leapfrog's work between two steps is the mean of their loads times the
 	// motion, so the jump of the loads counts half.
+	const Vector3r velocity2 = scene->isPeriodic
+	        ? Vector3r(state2.vel + scene->cell->intrShiftVel(I.cellDist)) : state2.vel;
 	const Real bondPower = pairPower(
 	        ddem::eigenVector(loads.force), ddem::eigenVector(loads.moment1), ddem::eigenVector(loads.moment2),
-	        state1, state2);
-	const Real contactPower = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2);
+	        state1, state2, velocity2);
+	const Real contactPower
+	        = pairPower(contact.force, contact.moment1, contact.moment2, state1, state2, velocity2);
 	parted->energy          = loads.energy - contact.energy - contact.dissipated - contact.damped
 	        + 0.5 * scene->dt * (bondPower - contactPower);
 	if (scene->trackEnergy) energy.add(*scene->energy, BondedEnergy::BondBroken, parted->energy);
@@ -326,7 +334,7 @@ boost::python::dict Law2_ScGeom_BondedPhys_Bonded::largestStresses() const
 		if (!phys || !phys->bonded || !I->geom) continue;
 		const State&          state1 = *(*current->bodies)[I->getId1()]->state;
 		const State&          state2 = *(*current->bodies)[I->getId2()]->state;
-		const Vector3r        branch = state2.pos - state1.pos; // bonds know no periodic boundaries
+		const Vector3r        branch = branchIn(*current, *I);
 		ddem::BreakableBond   bond   = phys->bond(static_cast<const ScGeom&>(*I->geom));
 		ddem::BondAnswer      answer {};
 		const ddem::BondLoads   loads = loadsOf(bond, branch, state1, state2, answer);

@@ -98,8 +98,7 @@ public:
 		"touched. A sphere on the edge that two facets share touches both, as in all of YADE. :yref:`ScGeom6D` "
 		"works as well, its relative rotations are not used; :yref:`ScGridCoGeom` is refused.\n\n"
 		"**Saving.** Bonds and the list of broken bonds are saved with the scene. "
-		"**Limits:** no periodic boundaries for bonds; one process with threads: under mpirun with several it "
-		"refuses to be made, loaded or run.",
+		"**Limits:** one process with threads: under mpirun with several it refuses to be made, loaded or run.",
 		((std::string,convention,"consistent",Attr::triggerPostLoad,
 			"'consistent', or 'esys' for the bonds and contacts of ESyS-Particle; to be chosen before the "
 			"first step"))

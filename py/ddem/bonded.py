@@ -26,6 +26,7 @@ Crush a prism of bonded spheres::
 
 :func:`engines` writes that list. SI units; a platen's force, stress and strain are positive in compression.
 """
+import copy
 import math
 import warnings
 
@@ -37,8 +38,8 @@ from yade import (
 	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
 	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
-	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, NewtonIntegrator, O,
-	RampedTranslationEngine, ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
+	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, Matrix3, NewtonIntegrator,
+	O, RampedTranslationEngine, ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter, provenance
@@ -55,8 +56,9 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 	"""Append the spheres of a packing to the scene and bond them, as they are, without load.
 
 	:param packing: :class:`packing.Packing`, or what :func:`packing.of` takes, as YADE's SpherePack. One layer
-		(:attr:`packing.Packing.flat`) stays in its plane:
-		motion along z and rotation about x and y are blocked.
+		(:attr:`packing.Packing.flat`) stays in its plane: motion along z and rotation about x and y are
+		blocked. The cell of a periodic one becomes that of the scene; in a periodic scene, a packing without
+		a cell fills O.cell. Spheres are bonded across its borders, too.
 	:param material: a :yref:`BondedMat` of O.materials, or its label; or a list of them, one for each sphere. Where
 		two meet, the weaker counts, or a third that is :yref:`between<BondedMat.between>` them.
 	:param gap: spheres whose surfaces are closer than this are bonded [m]. None: the packing's own list of bonds,
@@ -68,9 +70,9 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 		number of bonds that returns them, in ascending order of pairs.
 	:returns: :class:`BondedSample`; a warning says where it is not in one piece
 	:raises ValueError: unknown label or mass law, a material of another kind or with bad parameters, a negative
-		gap, nothing to bond. Nothing is appended then.
+		gap, nothing to bond, a cell that is not O.cell or less than two bonds wide. Nothing is appended then.
 	"""
-	packing = packings.of(packing)
+	packing = _in_cell(packings.of(packing))
 	materials = _materials(material, len(packing))
 	if mass_law not in ("solid", "cube"):
 		raise ValueError(
@@ -93,6 +95,10 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 			f"smallest radius is {packing.radii.min()} m)"
 		)
 	factors = None if scatter is None else np.asarray(scatter(len(pairs)), float)
+	was_periodic = O.periodic
+	if packing.cell is not None and not was_periodic:
+		O.periodic = True
+		O.cell.hSize = Matrix3(*packing.cell.ravel().tolist())
 	spheres = []
 	for centre, radius, material in zip(packing.centres, packing.radii, materials):
 		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
@@ -109,9 +115,27 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 	except ValueError:
 		for i in ids:
 			O.bodies.erase(i)
+		O.periodic = was_periodic
 		raise
 	_warn_of_pieces(packing, pairs)
 	return BondedSample(ids, packing.lower, packing.upper, len(pairs), packing.shape and packing)
+
+
+def _in_cell(packing):
+	"""The packing with the scene's cell, where that is periodic."""
+	if not O.periodic:
+		return packing
+	sides = np.array(O.cell.hSize, float).reshape(3, 3)
+	if packing.cell is None:
+		packing = copy.copy(packing)
+		packing.cell = sides
+	elif not np.allclose(packing.cell, sides, rtol=1e-9, atol=1e-12 * np.abs(sides).max()):
+		raise ValueError(
+			f"the packing fills a cell with the sides {packing.cell.tolist()} m (columns), the scene's "
+			f"O.cell.hSize is {sides.tolist()} m: set O.cell.hSize, or O.periodic = False and append sets "
+			"both"
+		)
+	return packing
 
 
 class Weibull:
@@ -172,7 +196,8 @@ class BondedSample:
 			raise RuntimeError("the scene has no spheres of BondedMat")
 		start = np.array([b.state.refPos for b in bodies])
 		radii = np.array([[b.shape.radius] for b in bodies])
-		sample = cls([b.id for b in bodies], (start - radii).min(axis=0), (start + radii).max(axis=0), 0)
+		box = packings.Packing(start, radii, cell=np.reshape(O.cell.refHSize, (3, 3)) if O.periodic else None)
+		sample = cls([b.id for b in bodies], box.lower, box.upper, 0)
 		sample.initial_bonds = len(sample.bonds) + len(sample.broken)
 		return sample
 

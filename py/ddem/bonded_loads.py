@@ -72,6 +72,11 @@ def platens(
 def _check_area(sample, area, axis):
 	if axis not in _AXES:
 		raise ValueError(f"axis = '{axis}' is unknown; use 'x', 'y' or 'z'")
+	if O.periodic:
+		raise ValueError(
+			"a sample in a periodic cell has no faces for walls: load the cell, by O.cell.velGrad or "
+			"PeriTriaxController (see the manual), or set O.periodic = False before the sample is made"
+		)
 	box = float(np.delete(sample.upper - sample.lower, _AXES.index(axis)).prod())
 	if area is None:
 		sample.face(axis)

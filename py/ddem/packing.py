@@ -10,6 +10,7 @@ documented with a seed are of GenGeo's packings.
 import contextlib
 import ctypes
 import hashlib
+import itertools
 import json
 import math
 import numbers
@@ -34,15 +35,17 @@ class Packing:
 	"""Spheres in a box or another shape, and pairs of them that are to be bonded. Plain numpy arrays;
 	needs no YADE."""
 
-	def __init__(self, centres, radii, lower=None, upper=None, bonds=None, shape=None):
+	def __init__(self, centres, radii, lower=None, upper=None, bonds=None, shape=None, cell=None):
 		"""
 		:param centres: (n, 3) [m]
 		:param radii: (n,) [m]
 		:param lower, upper: corners of the box [m]; None: that of the spheres
 		:param bonds: (m, 2) pairs of rows, or None when nothing is said about bonds
 		:param shape: one of :mod:`shapes` that the spheres fill; None: their box
+		:param cell: sizes (3,) of the periodic cell that the spheres fill, or (3, 3) its sides, one a column,
+			as O.cell.hSize [m]; None: nothing is periodic
 		:raises ValueError: shapes that do not fit, numbers that are not finite, radii that are not positive,
-			bonds to unknown spheres
+			bonds to unknown spheres, a cell without volume
 		"""
 		self.centres = np.array(centres, float).reshape(-1, 3)
 		self.radii = np.array(radii, float).reshape(-1)
@@ -55,6 +58,10 @@ class Packing:
 			raise ValueError(f"sphere {row}: centre {tuple(self.centres[row].tolist())} m is not finite")
 		for row in np.flatnonzero(~((self.radii > 0) & np.isfinite(self.radii))):
 			raise ValueError(f"sphere {row}: radius = {self.radii[row]} m must be positive and finite")
+		#: sides of the periodic cell (3, 3), one a column [m]; None: nothing is periodic
+		self.cell = None if cell is None else _checked_cell(cell)
+		if cell is not None and lower is None and upper is None:
+			lower, upper = np.minimum(self.cell, 0).sum(axis=1), np.maximum(self.cell, 0).sum(axis=1)
 		around = self.radii[:, None]
 		#: corner of the box [m]
 		self.lower = np.array((self.centres - around).min(axis=0) if lower is None else lower, float)
@@ -80,7 +87,10 @@ class Packing:
 
 	@property
 	def volume(self):
-		"""Volume of the shape, or of the box where there is none [m³]; a layer is as deep as its box."""
+		"""Volume of the periodic cell, of the shape, or of the box where there is none [m³]; a layer is as deep
+		as its box."""
+		if self.cell is not None:
+			return float(abs(np.linalg.det(self.cell)))
 		if self.shape is None:
 			return float(self.size.prod())
 		return self.shape.volume * (float(self.size[2]) if self.shape.dimension == 2 else 1)
@@ -104,10 +114,18 @@ class Packing:
 
 	def neighbours(self, gap):
 		"""Pairs of spheres whose surfaces are closer than *gap* [m] or overlap:
-		(m, 2) rows, each pair and the list in ascending order."""
-		from scipy.spatial import cKDTree
+		(m, 2) rows, each pair and the list in ascending order; across the border of a periodic cell, too."""
 		if not gap >= 0:
 			raise ValueError(f"gap = {gap} m must not be negative")
+		if self.cell is None:
+			return self._neighbours(gap)
+		centres, rows = _with_images(self.centres, self.cell, 2 * float(self.radii.max()) + gap)
+		count, pairs = len(self), Packing(centres, self.radii[rows])._neighbours(gap)
+		pairs = np.sort(rows[pairs[pairs[:, 0] < count]], axis=1)
+		return np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0)
+
+	def _neighbours(self, gap):
+		from scipy.spatial import cKDTree
 		# Radii span a decade: searching by classes of radius keeps the candidates few.
 		classes = np.floor(np.log2(self.radii / self.radii.min())).astype(int)
 		members = [np.flatnonzero(classes == c) for c in range(classes.max() + 1)]
@@ -164,6 +182,7 @@ def of(spheres, lower=None, upper=None):
 	another packing.
 
 	:param lower, upper: corners of the box [m]; None: that of the spheres
+	:returns: with the cell of a SpherePack that is periodic
 	:raises ValueError: it lists something else, or nothing
 	"""
 	if isinstance(spheres, Packing):
@@ -176,7 +195,9 @@ def of(spheres, lower=None, upper=None):
 			f"{type(spheres).__name__} is no packing: give a Packing, a SpherePack, or a list of spheres "
 			"or of (centre, radius)"
 		) from None
-	return Packing(centres, radii, lower, upper)
+	cell = tuple(getattr(spheres, "cellSize", ())) if getattr(spheres, "isPeriodic", False) else ()
+	cell = cell if any(cell) else None  # a SpherePack may say periodic and have no cell
+	return Packing(centres, radii, lower, upper, cell=cell)
 
 
 def fill(shape, rmin, rmax, seed=1, fails=5000):
@@ -362,6 +383,33 @@ def _fill(shape, rmin, rmax, seed, fails):
 	return _packing.fill(
 		shape.dimension, shape.lower, shape.upper, shape.walls, float(rmin), float(rmax), int(seed), int(fails)
 	)
+
+
+def _checked_cell(cell):
+	"""Sides (3, 3) of a cell given by sizes or sides."""
+	sides = np.array(cell, float)
+	sides = np.diag(sides) if sides.shape == (3, ) else sides
+	if sides.shape != (3, 3) or not abs(np.linalg.det(sides)) > 0 or not np.isfinite(sides).all():
+		raise ValueError(
+			f"cell = {np.array(cell).tolist()} m: a periodic cell has three positive sizes, or three "
+			"sides that span a volume"
+		)
+	return sides
+
+
+def _with_images(centres, cell, reach):
+	"""Centres, moved into the cell, and after them those images that are closer to it than *reach* [m]; and the row
+	of each. The same ones for spheres that have left the cell on one side and come back on the other."""
+	inverse = np.linalg.inv(cell)
+	inside = centres @ inverse.T % 1
+	margin = reach * np.linalg.norm(inverse, axis=1)  # a row of the inverse is one over the height
+	places, rows = [inside], [np.arange(len(centres))]
+	for shift in itertools.product((-1, 0, 1), repeat=3):
+		image = inside + shift
+		near = np.flatnonzero(((image > -margin) & (image < 1 + margin)).all(axis=1)) if any(shift) else []
+		places.append(image[near])
+		rows.append(np.asarray(near, int))
+	return np.concatenate(places) @ cell.T, np.concatenate(rows)
 
 
 def _checked_bonds(bonds, count):

@@ -15,6 +15,7 @@ PACKAGE = ROOT / "py" / "ddem"
 #: tests that no module, class or script names, each about several of them together
 TOPICS = {
 	"bonded_contacts": "bonded spheres against everything that YADE has",
+	"bonded_cells": "bonded spheres in periodic cells",
 	"bonded_samples": "samples of bonded spheres as users make and change them",
 	"bonded_energy": "the energy book of bonded spheres",
 	"deformable_errors": "bad input to triangles",

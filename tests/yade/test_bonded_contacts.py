@@ -13,7 +13,7 @@ from yade import (
 	InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
 	Ip2_CohFrictMat_CohFrictMat_CohFrictPhys, Ip2_FrictMat_BondedMat_BondedPhys,
 	Law2_ScGeom6D_CohFrictPhys_CohesionMoment, Law2_ScGeom_BondedPhys_Bonded, NewtonIntegrator, O, Quaternion,
-	TriaxialStressController, Vector3, ddem, gridpfacet, utils
+	TriaxialStressController, UniaxialStrainer, Vector3, ddem, gridpfacet, utils
 )
 
 RADIUS, YOUNG, DENSITY = 1e-3, 60e9, 2600
@@ -462,3 +462,27 @@ def test_triaxial_stress_on_box_walls():
 	O.run(500, True)
 	assert [controller.stress(k)[k // 2] for k in range(6)] == pytest.approx([-5e6] * 6, rel=0.02)
 	assert len(rocks.broken) == 0
+
+
+def test_a_uniaxial_strainer_measures_the_modulus_of_a_lattice():
+	"""Columns of a cubic lattice, pulled by their end spheres: E = k_n/d; its strain is that of the centres."""
+	rock()
+	count, side = (2, 6, 2), 2 * RADIUS
+	places = side * (np.array([(x, y, z) for x in range(2) for y in range(6) for z in range(2)]) + 0.5)
+	lattice = ddem.bonded.append(ddem.packing.Packing(places, np.full(len(places), RADIUS)), "rock")
+	below, above = (
+		lattice.ids[abs(places[:, 1] - y) < RADIUS].tolist() for y in (RADIUS, side * count[1] - RADIUS)
+	)
+	strainer = UniaxialStrainer(
+		axis=1, strainRate=20.0, posIds=above, negIds=below, crossSectionArea=(2 * side)**2,
+		blockRotations=True,
+		blockDisplacements=False, setSpeeds=True, stressUpdateInterval=1
+	)
+	O.engines = ddem.bonded.engines()
+	O.engines = O.engines[:-1] + [strainer, O.engines[-1]]
+	O.engines[-1].damping = 0.3
+	O.dt = ddem.bonded.time_step(0.3)
+	O.run(800, True)
+	spring = next(iter(O.interactions)).phys.kn
+	assert strainer.avgStress / strainer.strain == pytest.approx(spring / side, rel=0.01)
+	assert len(lattice.broken) == 0

@@ -127,3 +127,21 @@ def test_a_loaded_scene_has_its_sample_and_platens_again(tmp_path):
 	assert loaded.stress == pytest.approx(expected[0], rel=1e-3)  # the box of the spheres is that of the packing
 	assert bonded.Platens.from_scene(again, area=platens.area).stress == pytest.approx(expected[0], rel=1e-6)
 	assert len(loaded.engines) == 2 and again.initial_bonds == sample.initial_bonds
+
+
+def test_a_crushing_scene_goes_on_with_the_same_bits_after_loading(tmp_path):
+	"""Contacts that broken bonds leave begin in the order of their breaking; after loading nobody knows that."""
+	sample, _ = specimen()
+	O.materials["rock"].cohesion = 20e6
+	O.run(900, True)
+	instants = []
+	for k in range(6):
+		O.save(str(tmp_path / f"{k}.yade.gz"))
+		O.run(60, True)
+		instants.append((sample.positions, sample.spins, sample.broken_fraction))
+	assert 0.05 < instants[0][2] < instants[-1][2]
+	for k, (places, spins, _) in enumerate(instants):
+		O.load(str(tmp_path / f"{k}.yade.gz"))
+		O.run(60, True)
+		again = bonded.BondedSample.from_scene()
+		assert (again.positions == places).all() and (again.spins == spins).all(), k

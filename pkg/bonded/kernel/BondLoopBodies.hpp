@@ -62,7 +62,8 @@ template <class Unit, class Number, BondConvention convention, class Criterion>
 		};
 		BondLoadsOf<Number> loads;
 		if constexpr (remembers) loads = bondLoads(bond, branch, q1, q2, advance);
-		else { // who takes nothing looks afterwards: between the others there are not registers enough, a seventh
+		// who takes nothing looks afterwards: between the others there are not registers enough, a seventh
+		else {
 			loads = convention == BondConvention::Esys ? esysBondLoads(bond, branch, q1, q2)
 			                                           : bondLoads(bond, branch, q1, q2);
 			advance(loads.section);
