@@ -19,6 +19,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade.ddem import broken_bonds, packing
 from yade.ddem.series import Series
+from yade.ddem.studies.uniaxial import CompressionTest
 
 DATA = os.path.join(os.path.dirname(__file__), "..", "data", "esys")
 SMALL = ["--radii", "1e-3", "4e-3", "--fails", "500", "--no-progress"]  # 62 spheres
@@ -414,7 +415,7 @@ def test_options_reach_the_model(job, monkeypatch):
 	(["--out", "/proc/nowhere"], "--out: cannot write into /proc/nowhere"),
 ])
 def test_bad_options_are_refused_before_anything_runs(job, monkeypatch, capsys, tmp_path, arguments, message):
-	monkeypatch.setattr(job.uniaxial.CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
+	monkeypatch.setattr(CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
 	monkeypatch.chdir(tmp_path)
 	quick = [] if {"--radii", "--particles"} & set(arguments) else SMALL
 	with pytest.raises(SystemExit) as stopped:

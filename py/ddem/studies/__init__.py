@@ -10,6 +10,8 @@
 :mod:`campaign`                many runs of a script
 :mod:`workers`                 where independent runs go: Dask's workers; :mod:`questions` to a module, each
                                answered in a YADE of its own (:mod:`yade_process`)
+:mod:`bonded_tests`            kinds of tests of bonded spheres; :mod:`bonded_options`, :mod:`bonded_specimen`:
+                               their options and samples
 :mod:`bonded_study`            the study of bonded spheres
 :mod:`esys`                    ESyS-Particle as a peer
 :mod:`structures`              beam, bar and blocks
@@ -19,7 +21,8 @@
 from .._lazy import lazy
 
 _MODULES = (
-	"bonded_study", "calibration", "calibration_quantities", "campaign", "commandline", "esys", "evaluations",
+	"bonded_options", "bonded_specimen", "bonded_study", "bonded_tests", "calibration", "calibration_quantities",
+	"campaign", "commandline", "esys", "evaluations",
 	"interrupts", "measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "workers",
 	"yade_process"
 )
