@@ -64,7 +64,8 @@ def main():
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
 	run.setup, run.parameters = setup, sample
-	run.extra.update(bonded_specimen.waves(platens, run))
+	run.extra.update(bonded_specimen.waves(platens.sample, run))
+	run.extra.update(kind.figures(run, platens))
 	report = Report(
 		[run], options.out, kind.title(), settings=bonded_test.settings(options, platens),
 		command=commandline.command(),
@@ -79,9 +80,10 @@ def make(options):
 	"""Spheres, bonds, walls and engines in the scene; the walls, the critical time step,
 	and what the report says about the sample."""
 	O.reset()
-	packing = bonded_specimen.read_packing(options)
+	kind = TESTS[options.test]
+	packing = kind.packing(options, bonded_specimen.read_packing(options))
 	sample = bonded_specimen.append(options, packing)
-	platens, loads = TESTS[options.test].load(options, sample)
+	platens, loads = kind.load(options, sample)
 	O.engines = ddem.bonded.engines(loads, options.viscosity, options.rotational_viscosity, options.convention)
 	critical = ddem.bonded.critical_time_step()
 	O.dt = options.dt or options.safety * critical

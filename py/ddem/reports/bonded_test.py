@@ -73,17 +73,15 @@ def sample_rows(options, packing, bonds, material, dt, critical):
 
 def settings(options, platens):
 	"""Rows about the test and its walls."""
-	moving = "each wall" if options.drive == "both" else "the upper wall, the lower stands"
-	direction, peer = (
-		("pull" if TESTS[options.test].sense < 0 else "push"),
-		(", as in ESyS-Particle 2.3.5" if options.convention == "esys" else ""),
-	)
+	kind = TESTS[options.test]
+	peer = ", as in ESyS-Particle 2.3.5" if options.convention == "esys" else ""
+	direction = f"; they {'pull' if kind.sense < 0 else 'push'}" if kind.two_walls else ""
 	rows = [
 		("convention", options.convention, f"of bonds, contacts and moving walls{peer}"),
 		(
-			"walls",
+			"walls" if kind.two_walls else "v",
 			f"{options.velocity:g} m/s",
-			f"speed of {moving}, reached after {1e6 * options.ramp:g} µs; they {direction}",
+			f"speed {kind.motion(options)}, reached after {1e6 * options.ramp:g} µs{direction}",
 		),
 		(
 			"K",
@@ -91,7 +89,7 @@ def settings(options, platens):
 			"stiffness of the walls, π r K for a sphere of radius r",
 		),
 	]
-	rows += TESTS[options.test].settings(options)
+	rows += kind.settings(options, platens)
 	if options.bonded_walls:
 		along = (
 			f"stiffness along them {options.wall_shear_stiffness / 1e9:g} GPa"
@@ -106,7 +104,7 @@ def settings(options, platens):
 		else (strain, "of strain")
 	)
 	return rows + [
-		("A", f"{1e6 * platens.area:.4g} mm²", "loaded face"),
+		("A", f"{1e6 * platens.area:.4g} mm²", kind.record.wording.face),
 		(
 			"viscosity",
 			f"{options.viscosity:g}, {options.rotational_viscosity:g} /s",
@@ -129,6 +127,14 @@ def notes(options, platens, run):
 			f"{100 * closing_speed(options) / wave:.3f} %. Where the two wall forces differ, the test is "
 			"not quasi-static."
 		)
+	elif run.wording.modulus is None:
+		peak = run.strength.peak
+		top, bottom = (float(run.series[name][peak]) for name in ("force_top", "force_bottom"))
+		said.append(
+			f"Rate. At the peak the forces on both sides are {1e-3 * top:.3g} and {1e-3 * bottom:.3g} kN, "
+			f"{100 * abs(top - bottom) / max(abs(top + bottom) / 2, 1e-300):.2g} % apart. Where they "
+			"differ much, the test is not quasi-static: lower --velocity."
+		)
 	if options.convention == "esys":
 		said.append(
 			"ESyS-Particle's bonds have half the bending moment EI/d₀, the sum of the radii as rest "
@@ -136,5 +142,5 @@ def notes(options, platens, run):
 			"not close exactly. Bonds between spheres with a gap g start with the stress E g/d₀, and "
 			"break at once where it exceeds their strength."
 		)
-	said += TESTS[options.test].notes(options)
+	said += TESTS[options.test].notes(options, run)
 	return said

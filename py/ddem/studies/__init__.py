@@ -3,7 +3,7 @@
 
 =============================  ====================================================================================
 :mod:`uniaxial`                a sample crushed between platens or pulled apart; :mod:`runs`, :mod:`measures`
-                               and :mod:`snapshots`: what is kept of it, as plain data
+                               and :mod:`snapshots`: what is kept of it, as plain data; :mod:`wording`: its words
 :mod:`virtualtest`             tests of a small specimen, in this YADE or each in its own
 :mod:`calibration`             material parameters for wanted strengths; :mod:`calibration_quantities`,
                                :mod:`evaluations`
@@ -23,7 +23,7 @@ from .._lazy import lazy
 _MODULES = (
 	"bonded_options", "bonded_specimen", "bonded_study", "bonded_tests", "calibration", "calibration_quantities",
 	"campaign", "commandline", "esys", "evaluations",
-	"interrupts", "measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "workers",
-	"yade_process"
+	"interrupts", "measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "wording",
+	"workers", "yade_process"
 )
 __getattr__, __dir__ = lazy(globals(), dict.fromkeys(_MODULES))

@@ -57,8 +57,11 @@ def read_options():
 	)
 	sample = parser.add_argument_group("generated sample")
 	sample.add_argument(
-		"--size", type=positive, nargs=3, default=(0.010, 0.020, 0.010), metavar=("W", "H", "D"),
-		help="width, height and depth of the prism [m]; the load is along H"
+		"--size", type=positive, nargs=3, default=SUPPRESS, metavar=("W", "H", "D"),
+		help=(
+			"width, height and depth of the prism [m]; the load is along H, of direct shear along "
+			f"W {_defaults('size')}"
+		)
 	)
 	sample.add_argument(
 		"--radii", type=positive, nargs=2, default=(0.4e-3, 2e-3), metavar=("MIN", "MAX"),
@@ -195,8 +198,11 @@ def read_options():
 	)
 	walls = parser.add_argument_group("walls")
 	walls.add_argument(
-		"--wall-stiffness", type=positive, default=100e9, metavar="PA",
-		help="K: a sphere of radius r feels the spring pi r K"
+		"--wall-stiffness", type=positive, default=SUPPRESS, metavar="PA",
+		help=(
+			"K: a sphere of radius r feels the spring pi r K (default: 100e9; in bending a tenth of "
+			"--young, in shear --young)"
+		)
 	)
 	walls.add_argument(
 		"--bonded-walls", action=argparse.BooleanOptionalAction, default=SUPPRESS,
@@ -236,8 +242,8 @@ def read_options():
 		help=f"the test ends there at the latest {_defaults('strain')}"
 	)
 	test.add_argument(
-		"--stop", type=share, default=0.2, metavar="PART",
-		help="the test ends when the stress stays below this part of the peak; 0: never"
+		"--stop", type=share, default=SUPPRESS, metavar="PART",
+		help=f"the test ends when the stress stays below this part of the peak; 0: never {_defaults('stop')}"
 	)
 	output = parser.add_argument_group("output")
 	output.add_argument(
@@ -266,9 +272,10 @@ def read_options():
 	for name, value in (
 		("packings", None), ("particles", None), ("bonds", None), ("box", None), ("mass_law", law),
 		("density", density), ("bonded_walls", test.bonded_walls),
-		("velocity", test.velocity), ("strain", test.strain),
+		("velocity", test.velocity), ("strain", test.strain), ("stop", test.stop),
 		("rotational_viscosity", options.viscosity), ("dt", None), ("tensile_strength", None),
-		("shape", test.shape), ("scatter", None), *test.own.items()
+		("shape", test.shape), ("size", test.size), ("scatter", None),
+		("wall_stiffness", test.wall_stiffness(options)), *test.own.items()
 	):
 		given.setdefault(name, value)
 	options.friction_angle = math.radians(options.phi) if "phi" in given else math.atan(options.tan_phi)
@@ -282,7 +289,8 @@ def check(options, parser):
 	generated = ("size", "radii", "seed", "fails", "packings")
 	if options.particles:
 		for name in generated:
-			if getattr(options, name) not in (None, parser.get_default(name)):
+			usual = TESTS[options.test].size if name == "size" else parser.get_default(name)
+			if getattr(options, name) not in (None, usual):
 				parser.error(
 					f"argument --{name}: it belongs to a generated sample, not to a file of "
 					"particles"
@@ -303,9 +311,11 @@ def check(options, parser):
 	for other in TESTS.values():
 		for name in other.own.keys() & vars(options).keys() - test.own.keys():
 			parser.error(f"argument --{name.replace('_', '-')}: it belongs to --test {other.name}")
+	if not test.two_walls and options.drive != "both":
+		parser.error(f"argument --drive: --test {test.name} has no two walls that move")
 	test.check(options, parser.error)
 	if test.prism_only and options.shape != "prism":
-		parser.error(f"argument --shape: the walls of --test {options.test} enclose a prism")
+		parser.error(f"argument --shape: --test {options.test} needs a prism")
 	if options.convention == "esys" and options.criterion != "mohr-coulomb":
 		parser.error("argument --criterion: bonds of the convention esys break by mohr-coulomb")
 	if options.wall_shear_stiffness and not options.bonded_walls:
@@ -319,6 +329,9 @@ def check(options, parser):
 
 def _defaults(name):
 	"""Defaults of an option that differ between kinds of tests, for its help."""
+	said = lambda value: " ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else value
 	common = getattr(TESTS["compression"], name)
-	others = [f"{kind} {getattr(test, name)}" for kind, test in TESTS.items() if getattr(test, name) != common]
-	return f"(default: {common}; in {', '.join(others)})"
+	others = [
+		f"{kind} {said(getattr(test, name))}" for kind, test in TESTS.items() if getattr(test, name) != common
+	]
+	return f"(default: {said(common)}; in {', '.join(others)})"

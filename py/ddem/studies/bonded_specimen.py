@@ -7,6 +7,7 @@ from yade import BondedMat, O, ParallelBondMat, SofteningBondMat
 
 from .. import bonded
 from .. import packing as packings
+from .bonded_tests import TESTS
 
 #: law and density [kg/m³] of the mass of spheres in each convention, unless told otherwise
 MASS = {"consistent": ("solid", 2600.0), "esys": ("cube", 1e6)}
@@ -16,17 +17,16 @@ CRITERIA = {
 	"parallel": (ParallelBondMat, {"momentContribution": "moment_contribution"}),
 	"softening": (SofteningBondMat, {"tensionEnergy": "tension_energy", "shearEnergy": "shear_energy"}),
 }
-FLAT = math.radians(15)  #: half of the angle that each flat end of a disc takes
 
 
 def read_packing(options):
 	"""The spheres, and their bonds where a file lists them."""
 	if options.particles is None and options.shape != "prism":
-		width, height, depth = options.size
+		width, height, _ = options.size
 		if options.shape == "cylinder":
 			body = packings.Cylinder((0, 0, 0), (0, height, 0), width / 2)
 		else:
-			body = flattened_disc(width, depth)
+			body = TESTS[options.test].disc(options)
 		return packings.fill(body, *options.radii, seed=options.seed, fails=options.fails)
 	if options.particles is None:
 		return packings.prism(
@@ -39,21 +39,6 @@ def read_packing(options):
 			packing.centres, packing.radii, options.box[:3], options.box[3:], packing.bonds
 		)
 	return packing
-
-
-def flattened_disc(diameter, length):
-	"""A disc on its side for the Brazilian test, with flat ends so that it does not crush where it is touched
-	(Wang, Jia, Kou, Zhang, Lindqvist 2004)."""
-	around = [(math.sin(a), math.cos(a)) for a in (2 * math.pi * k / 72 for k in range(72))]
-	level = math.cos(FLAT)
-	corners = [(x, y) for x, y in around if abs(y) < level]
-	corners += [(sx * math.sin(FLAT), sy * level) for sx in (-1, 1) for sy in (-1, 1)]
-	return packings.Polyhedron(
-		[
-			(diameter / 2 * x, diameter / 2 * (y + level), z) for x, y in corners
-			for z in (-length / 2, length / 2)
-		]
-	)
 
 
 def append(options, packing):
@@ -77,10 +62,15 @@ def append(options, packing):
 	)
 
 
-def waves(platens, run):
-	"""Density of the sample as a whole, and the speed of a wave along it, √(E/ρ), for the summary."""
-	density = sum(O.bodies[int(i)].state.mass for i in platens.sample.ids) / (platens.area * platens.height)
+def waves(sample, run):
+	"""Density of a sample as a whole, and the speed of a wave along it, √(E/ρ), for the summary; None where the
+	test measures no modulus.
+
+	:param run: the finished :class:`runs.Run`
+	"""
+	density = sum(O.bodies[int(i)].state.mass for i in sample.ids) / sample.volume
+	young = run.strength.young if run.wording.modulus else 0
 	return {
 		"sample_density_kg_m3": density,
-		"wave_speed_m_s": math.sqrt(run.strength.young / density) if run.strength.young > 0 else None,
+		"wave_speed_m_s": math.sqrt(young / density) if young > 0 else None,
 	}

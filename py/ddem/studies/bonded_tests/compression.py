@@ -9,7 +9,7 @@ class Compression(BondedTest):
 	name = "compression"
 	about = "walls that push"
 
-	def notes(self, options):
+	def notes(self, options, run):
 		return [
 			"Stress is the mean of both walls (eq. 9). The script in the tutorial of ESyS-Particle "
 			"divides by A instead of 2A, and so gives stresses, strengths and moduli twice as high."

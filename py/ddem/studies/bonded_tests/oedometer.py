@@ -16,7 +16,10 @@ class Oedometer(BondedTest):
 		platens = self.platens(options, sample)
 		return platens, [platens, bonded.confine(sample, stiffness=options.wall_stiffness)]
 
-	def notes(self, options):
+	def title(self):
+		return "Oedometer test of bonded spheres"
+
+	def notes(self, options, run):
 		return [
 			"Oedometer. The walls on the sides stand still; the modulus is that of one-dimensional "
 			"compression."

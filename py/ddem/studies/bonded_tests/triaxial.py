@@ -45,10 +45,13 @@ class Triaxial(BondedTest):
 	def duration(self, options, platens):
 		return super().duration(options, platens) + options.pressure_ramp
 
-	def settings(self, options):
+	def title(self):
+		return "Triaxial compression of bonded spheres"
+
+	def settings(self, options, platens):
 		return [("p", f"{options.pressure / 1e6:g} MPa", "pressure on the sides")]
 
-	def notes(self, options):
+	def notes(self, options, run):
 		return [
 			f"Triaxial. A pressure of {options.pressure / 1e6:g} MPa on all sides grows over "
 			f"{1e6 * options.pressure_ramp:g} µs; then the walls on the sides keep it by servo while the "
