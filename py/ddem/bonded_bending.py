@@ -147,6 +147,26 @@ class Bending:
 		return [self.sample.ids[rows] for rows in found]
 
 	@property
+	def outlines(self):
+		"""Lines (n, 2) [m] in the plane x, y that show supports and load in pictures."""
+		lower, middle = float(self.sample.lower[1]), float(0.5 * (self.sample.lower + self.sample.upper)[0])
+		wide, tall = max(0.5 * self.strip, 0.06 * self.height), 0.12 * self.height
+		triangle = np.array([[0, 0], [-wide, -tall], [wide, -tall], [0, 0]])
+		plate = O.bodies[self.load].state
+		face = float(plate.pos[1] - 0.5 * self.height)
+		return [
+			triangle + [middle - 0.5 * self.span, lower], triangle + [middle + 0.5 * self.span, lower],
+			[middle, face] + np.array(
+				[
+					[-0.5 * self.strip, tall],
+					[-0.5 * self.strip, 0],
+					[0.5 * self.strip, 0],
+					[0.5 * self.strip, tall],
+				]
+			)
+		]
+
+	@property
 	def section(self):
 		"""Depth and height (2,) of the section above the notch [m]."""
 		return self.depth, self.height - self.notch

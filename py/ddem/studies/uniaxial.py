@@ -58,8 +58,10 @@ class Specimen:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
 
-	def snapshot(self):
-		return (TriangleSnapshot if self.deformable else SphereSnapshot).of(self.sample, O.time)
+	def snapshot(self, loads=()):
+		if self.deformable:
+			return TriangleSnapshot.of(self.sample, O.time)
+		return SphereSnapshot.of(self.sample, O.time, loads)
 
 	def figures(self):
 		"""Further figures for the summary."""
@@ -212,7 +214,7 @@ class CompressionTest:
 	def _look(self, files):
 		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
 		if not self.snapshots or self.snapshots[-1].time < O.time:
-			self.snapshots.append(self.specimen.snapshot())
+			self.snapshots.append(self.specimen.snapshot(getattr(self.platens, "outlines", ())))
 		if files and self._filed != O.time:
 			self._filed = O.time
 			for recorder in self.recorders:

@@ -5,14 +5,13 @@ from argparse import SUPPRESS
 from ... import bonded
 from ... import packing as packings
 from ..commandline import positive
-from ..uniaxial import CompressionTest
 from ..wording import Column, Wording
-from .kind import BondedTest
+from .kind import BondedTest, Fracture
 
 _SPAN = 0.8  # of the supports, of the beam's length
 
 
-class Bent(CompressionTest):
+class Bent(Fracture):
 	"""Records the bending of a beam."""
 
 	kind = "bending"

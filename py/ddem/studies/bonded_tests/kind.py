@@ -5,6 +5,16 @@ from ...shapes import flattened_disc
 from ..uniaxial import CompressionTest
 
 
+class Fracture(CompressionTest):
+	"""Ends when the stress has fallen once bonds have broken: spheres that first touch rattle, and the peaks of
+	that are none to fall from."""
+
+	def _record(self):
+		stop, self.stop = self.stop, self.stop if self.specimen.damage > 0 else 0
+		super()._record()
+		self.stop = stop
+
+
 class BondedTest:
 	"""A kind of test; this one: two elastic walls along y. A new kind overrides what differs.
 
