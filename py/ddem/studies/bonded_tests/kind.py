@@ -25,7 +25,7 @@ class BondedTest:
 
 	name = None  #: of --test
 	about = None  #: for the help of --test
-	velocity = 0.125  #: of each wall, unless told otherwise [m/s]; see :attr:`strain`
+	velocity = 0.125  #: of each wall, unless told otherwise [m/s]
 	strain = 5e-3  #: largest one, unless told otherwise [-]
 	stop = 0.2  #: the test ends when the stress stays below this part of the peak, unless told otherwise; 0: never
 	shape = "prism"  #: of the sample, unless told otherwise
