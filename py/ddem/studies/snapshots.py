@@ -41,9 +41,10 @@ class SphereSnapshot:
 	# traces in the plane of the picture of the broken bonds' sections, which moved with their spheres (k, 2, 2) [m]
 	cracks: np.ndarray
 	tension: np.ndarray  # whether the bond failed in tension (k,)
+	loads: tuple = ()  # lines (n, 2) that show in pictures what loads it [m]
 
 	@classmethod
-	def of(cls, sample, time):
+	def of(cls, sample, time, loads=()):
 		centres, broken = sample.positions, sample.broken
 		rows = sample.rows(np.column_stack([broken["id1"], broken["id2"]]))
 		there = (rows >= 0).all(axis=1)  # not of a sphere that was erased
@@ -51,7 +52,7 @@ class SphereSnapshot:
 		first, second = centres[rows].transpose(1, 0, 2)
 		return cls(
 			time, centres, sample.radii, sample.damage, sample.rotations[:, 2],
-			crack_traces(first, second, broken["radius"]), broken["mode"] == "tension"
+			crack_traces(first, second, broken["radius"]), broken["mode"] == "tension", tuple(loads)
 		)
 
 
