@@ -13,12 +13,21 @@ using Vector = Membrane::Vector;
 
 constexpr double pressure = 3;
 
+/// Nodes on one particle each.
+std::vector<Membrane::Support> alone(const std::vector<std::int32_t>& particles)
+{
+	std::vector<Membrane::Support> supports;
+	for (std::size_t i = 0; i < particles.size(); i++)
+		supports.push_back({ std::int32_t(i), particles[i], 1 });
+	return supports;
+}
+
 /// A tetrahedron with its normals outwards, a particle beside each corner.
 const std::vector<Membrane::Face> sides { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } };
 const std::vector<Vector>         centres { { 0, 0, 0 }, { 2, 0, 0 }, { 0.3, 1.5, 0 }, { 0.2, 0.4, 1.1 } };
 const std::vector<Vector>         offsets { { -0.1, 0, 0 }, { 0.1, 0.2, 0 }, { 0, 0, -0.1 }, { 0, 0.1, 0.1 } };
 
-Membrane tetrahedron() { return { sides, {}, { 0, 1, 2, 3 }, offsets }; }
+Membrane tetrahedron() { return { sides, {}, alone({ 0, 1, 2, 3 }), offsets }; }
 
 std::vector<Vector> nodes()
 {
@@ -42,7 +51,7 @@ Membrane square(int n, std::vector<Vector>& places)
 			faces.push_back({ a, a + 1, a + n });
 			faces.push_back({ a + 1, a + n + 1, a + n });
 		}
-	return { faces, {}, carriers, std::vector<Vector>(places.size(), Vector::Zero()) };
+	return { faces, {}, alone(carriers), std::vector<Vector>(places.size(), Vector::Zero()) };
 }
 
 TEST(Membrane, leavesAClosedSurfaceWithoutForceAndMoment)
@@ -87,7 +96,7 @@ TEST(Membrane, enclosesTheVolumeOfATetrahedron) // the triple product over 6, wh
 TEST(Membrane, keepsThePressureFromItsEnds)
 {
 	Membrane whole = tetrahedron();
-	Membrane open { { sides[1], sides[2], sides[3] }, { sides[0] }, { 0, 1, 2, 3 }, offsets };
+	Membrane open { { sides[1], sides[2], sides[3] }, { sides[0] }, alone({ 0, 1, 2, 3 }), offsets };
 	std::vector<Vector> all, some;
 	whole.forces(centres, pressure, all);
 	open.forces(centres, pressure, some);
@@ -116,10 +125,61 @@ TEST(Membrane, sumsUpOnParticlesThatCarryManyNodes)
 {
 	std::vector<Vector>         forces;
 	std::vector<Vector>         corners { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } };
-	Membrane                    one { { { 0, 1, 2 }, { 0, 2, 3 } }, {}, { 0, 0, 0, 0 }, corners };
+	Membrane                    one { { { 0, 1, 2 }, { 0, 2, 3 } }, {}, alone({ 0, 0, 0, 0 }), corners };
 	one.forces({ { 7, 8, 9 } }, pressure, forces);
 	ASSERT_EQ(forces.size(), 1u);
 	EXPECT_LT((forces[0] - Vector(0, 0, -pressure)).norm(), 1e-14);
+}
+
+TEST(Membrane, doesItsWorkOnSharedNodes) // force = -∂(pV)/∂x, as above, with nodes between particles
+{
+	Membrane membrane { sides,
+		            {},
+		            { { 3, 0, 0.2 }, { 0, 0, 1 }, { 3, 2, 0.8 }, { 1, 1, 0.5 }, { 2, 2, 1 }, { 1, 2, 0.5 } },
+		            offsets };
+	const std::vector<Vector> three(centres.begin(), centres.begin() + 3);
+	std::vector<Vector>       forces;
+	membrane.forces(three, pressure, forces);
+	ASSERT_EQ(forces.size(), 3u);
+	for (std::size_t i = 0; i < 3; i++)
+		for (int axis = 0; axis < 3; axis++) {
+			auto more = three, less = three;
+			more[i][axis] += 1e-5;
+			less[i][axis] -= 1e-5;
+			const double slope = (membrane.volume(more) - membrane.volume(less)) / 2e-5;
+			EXPECT_NEAR(forces[i][axis], -pressure * slope, 1e-9);
+		}
+	EXPECT_LT((forces[0] + forces[1] + forces[2]).norm(), 1e-14);
+}
+
+TEST(Membrane, doesNotTwistWhatItEncloses)
+{
+	std::vector<Vector> forces;
+	tetrahedron().forces(centres, pressure, forces); // at centres beside the nodes they have a moment
+	const auto   before = forces;
+	const Vector axis   = Vector(1, 2, 2) / 3;
+	const auto   moment = [&](const Vector& about) {
+		double sum = 0;
+		for (std::size_t i = 0; i < 4; i++)
+			sum += about.dot(centres[i].cross(forces[i]));
+		return sum;
+	};
+	ASSERT_GT(std::abs(moment(axis)), 0.01);
+	Membrane::takeMoment(centres, axis, forces);
+	EXPECT_NEAR(moment(axis), 0, 1e-14);
+	Vector force = Vector::Zero(), middle = Vector::Zero();
+	for (std::size_t i = 0; i < 4; i++) {
+		force += forces[i];
+		middle += 0.25 * centres[i];
+	}
+	EXPECT_LT(force.norm(), 1e-14);
+	// the change is a rotation field: it does no work where nothing turns, as in expansion across the axis
+	double work = 0;
+	for (std::size_t i = 0; i < 4; i++) {
+		const Vector lever = centres[i] - middle;
+		work += (forces[i] - before[i]).dot(lever - axis.dot(lever) * axis);
+	}
+	EXPECT_NEAR(work, 0, 1e-14);
 }
 
 TEST(Membrane, givesTheSameBitsOnAnyNumberOfThreads)
@@ -151,11 +211,19 @@ TEST(Membrane, knowsHowMuchOfItHasTurned)
 TEST(Membrane, refusesNodesThatAreNotThere)
 {
 	using Faces = std::vector<Membrane::Face>;
-	const std::vector<Vector> one(1, Vector::Zero()), two(2, Vector::Zero());
-	EXPECT_THROW(Membrane(Faces { { 0, 1, 2 } }, Faces(), { 0, 0 }, two), std::invalid_argument);
-	EXPECT_THROW(Membrane(Faces(), Faces { { 0, 1, -1 } }, { 0, 0 }, two), std::invalid_argument);
-	EXPECT_THROW(Membrane(Faces(), Faces(), { 0, 0 }, one), std::invalid_argument);
-	EXPECT_THROW(Membrane(Faces(), Faces(), std::vector<std::int32_t>(1, -1), one), std::invalid_argument);
+	const std::vector<Vector> two(2, Vector::Zero());
+	EXPECT_THROW(Membrane(Faces { { 0, 1, 2 } }, {}, alone({ 0, 0 }), two), std::invalid_argument);
+	EXPECT_THROW(Membrane({}, Faces { { 0, 1, -1 } }, alone({ 0, 0 }), two), std::invalid_argument);
+	EXPECT_THROW(Membrane({}, {}, alone({ 0, 0, 0 }), two), std::invalid_argument);
+	EXPECT_THROW(Membrane({}, {}, alone({ 0, -1 }), two), std::invalid_argument);
+}
+
+TEST(Membrane, refusesWeightsThatLosePressure)
+{
+	const std::vector<Vector> one(1, Vector::Zero());
+	EXPECT_NO_THROW(Membrane({}, {}, { { 0, 0, 0.25 }, { 0, 1, 0.75 } }, one));
+	EXPECT_THROW(Membrane({}, {}, { { 0, 0, 0.25 }, { 0, 1, 0.7 } }, one), std::invalid_argument);
+	EXPECT_THROW(Membrane({}, {}, {}, one), std::invalid_argument);
 }
 
 } // namespace
