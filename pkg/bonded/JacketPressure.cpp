@@ -127,22 +127,23 @@ void JacketPressure::readCentres(const BondedSpheres* arrays)
 /// \returns what they have done since the last step, in which leapfrog moved at one speed under the mean of both [J]
 Real JacketPressure::addForces(BondedSpheres* arrays)
 {
-	const bool first = forces.size() != ids.size();
-	Real       done  = 0;
+	const bool book = scene->trackEnergy && forces.size() == ids.size(); // none before the first forces
+	Real       done = 0;
 	for (size_t i = 0; i < ids.size(); i++) {
-		Vector3r velocity;
+		Vector3r velocity = Vector3r::Zero();
 		if (arrays && arrays->isMovedHere(ids[i])) {
-			const auto          row  = size_t(arrays->rowOf(ids[i]));
-			double* const       load = arrays->motion.loadOf(row);
-			const double* const v    = arrays->motion.velocityOf(row);
+			const auto    row  = size_t(arrays->rowOf(ids[i]));
+			double* const load = arrays->motion.loadOf(row);
 			for (int axis = 0; axis < 3; axis++)
 				load[axis] += now[i][axis];
-			velocity = { v[0], v[1], v[2] };
+			if (!book) continue;
+			const double* const v = arrays->motion.velocityOf(row);
+			velocity              = { v[0], v[1], v[2] };
 		} else {
 			scene->forces.addForce(ids[i], now[i]);
 			velocity = (*scene->bodies)[ids[i]]->state->vel;
 		}
-		if (!first) done += 0.5 * scene->dt * velocity.dot(forces[i] + now[i]);
+		if (book) done += 0.5 * scene->dt * velocity.dot(forces[i] + now[i]);
 	}
 	forces.swap(now);
 	return done;

@@ -12,7 +12,7 @@ from yade import JacketPressure, O, Vector2i, Vector3, Vector3i
 
 _AXES = "xyz"
 _CORNERS = 64  # of the polygon around each sphere's outline
-_PARTS = 4  # of the distance between nodes, to which the side is split among spheres
+_PARTS = 6  # of the distance between nodes, to which the side is split among spheres
 
 
 def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
@@ -33,7 +33,7 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 	:param pressure: that presses inwards [Pa]
 	:param ramp: time in which it grows from 0 [s]; some ten times that of a wave through the sample
 	:param axis: of the specimen, "x", "y" or "z"
-	:param resolution: distance of the membrane's nodes [m]. None: the mean radius of the spheres.
+	:param resolution: distance of the membrane's nodes [m]. None: 1.5 mean radii of the spheres.
 	:returns: :class:`Jacket`; hand it to :func:`bonded.engines`.
 	:raises ValueError: pressure or ramp negative or not finite, an unknown axis, a layer, a resolution that is not
 		positive or leaves fewer than six nodes around the sample
@@ -47,7 +47,7 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 		if not (value >= 0 and math.isfinite(value)):
 			raise ValueError(f"jacket: {name} = {value} {unit} must be finite and not negative")
 	radii = sample.radii
-	size = float(radii.mean()) if resolution is None else resolution
+	size = 1.5 * float(radii.mean()) if resolution is None else resolution
 	if not (size > 0 and math.isfinite(size)):
 		raise ValueError(f"jacket: resolution = {resolution} m must be positive and finite")
 	number = _AXES.index(axis)
