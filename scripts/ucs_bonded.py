@@ -44,6 +44,7 @@ from yade.ddem.studies.commandline import count, not_negative, number, positive,
 
 # law and density [kg/m³] of each convention, unless told otherwise
 MASS = {"consistent": ("solid", 2600.0), "esys": ("cube", 1e6)}
+SIDES = {"walls": "the walls on the sides keep it by servo", "jacket": "a flexible jacket keeps it"}
 # Speed of each wall [m/s]: the stress of the first wave, ρcv, has to stay well below the strength,
 # which is small in tension.
 VELOCITY = {"compression": 0.125, "tension": 0.125 / 4, "triaxial": 0.25, "oedometer": 0.25, "brazilian": 0.0625}
@@ -131,7 +132,7 @@ def load(options, sample):
 		height = float(sample.upper[1] - sample.lower[1])
 		platens = ddem.bonded.triaxial(
 			sample, options.pressure, options.strain, options.strain * height / (2 * options.velocity),
-			options.pressure_ramp, 4 * options.velocity, options.wall_stiffness
+			options.pressure_ramp, 4 * options.velocity, options.wall_stiffness, options.confinement
 		)
 		return platens, platens
 	area = None
@@ -219,6 +220,10 @@ def read_options():
 	run.add_argument(
 		"--pressure-ramp", type=positive, default=1e-4, metavar="S",
 		help="time over which it grows (triaxial test)"
+	)
+	run.add_argument(
+		"--confinement", choices=("walls", "jacket"), default="walls",
+		help="what keeps it: rigid walls around a prism, or a flexible jacket (triaxial test)"
 	)
 	run.add_argument(
 		"--convention",
@@ -486,7 +491,10 @@ def check(options, parser):
 		parser.error("argument --pressure: it belongs to --test triaxial, which needs it")
 	if options.test == "brazilian" and options.shape != "disc" and not options.particles:
 		parser.error("argument --shape: the Brazilian test splits a disc")
-	if options.test in ("triaxial", "oedometer") and options.shape != "prism":
+	if options.confinement == "jacket" and options.test != "triaxial":
+		parser.error("argument --confinement: a jacket belongs to --test triaxial")
+	jacketed = options.test == "triaxial" and options.confinement == "jacket"
+	if options.test in ("triaxial", "oedometer") and options.shape != "prism" and not jacketed:
 		parser.error(f"argument --shape: the walls of --test {options.test} enclose a prism")
 	if options.convention == "esys" and options.criterion != "mohr-coulomb":
 		parser.error("argument --criterion: bonds of the convention esys break by mohr-coulomb")
@@ -636,7 +644,7 @@ def notes(options, platens, run, closing):
 	if options.test == "triaxial":
 		said.append(
 			f"Triaxial. A pressure of {options.pressure / 1e6:g} MPa on all sides grows over "
-			f"{1e6 * options.pressure_ramp:g} µs; then the walls on the sides keep it by servo while the "
+			f"{1e6 * options.pressure_ramp:g} µs; then {SIDES[options.confinement]} while the "
 			"platens approach. The stress is the whole axial one, strain counts from the start."
 		)
 	if options.test == "oedometer":
