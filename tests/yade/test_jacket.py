@@ -146,7 +146,7 @@ def test_a_jacket_strains_a_prism_as_rigid_walls_do():
 
 
 def test_a_jacket_does_the_work_it_books():
-	"""Without damping: energy of the sample = work of the jacket, and that is p times the lost volume."""
+	"""Without damping: energy of the sample = work of the jacket."""
 	sample = cylinder()
 	around = ddem.bonded.jacket(sample, 20e6, 1e-4)
 	O.engines = ddem.bonded.engines([around])
