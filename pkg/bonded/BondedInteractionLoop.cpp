@@ -23,7 +23,8 @@ bool BondedInteractionLoop::neverLooksAtBonds(const Engine& engine)
 {
 	static const std::set<std::string> names { "ForceResetter", "NewtonIntegrator",      "BondedNewtonIntegrator",
 		                                   "ForceEngine",   "InsertionSortCollider", "BondedInteractionLoop",
-		                                   "TorqueEngine",  "DeformableTimeStepper", "DeformableEngine" };
+		                                   "TorqueEngine",  "DeformableTimeStepper", "DeformableEngine",
+		                                   "JacketPressure" };
 	return names.count(engine.getClassName()) > 0 || dynamic_cast<const KinematicEngine*>(&engine)
 	        || dynamic_cast<const ViscousBodyDamping*>(&engine);
 }

@@ -48,6 +48,12 @@ public:
 	{
 		return id >= 0 && size_t(id) < row.size() ? row[size_t(id)] : -1;
 	}
+	/// Whether these arrays move a body.
+	bool isMovedHere(Body::id_t id) const
+	{
+		const std::int32_t r = rowOf(id);
+		return r >= 0 && !guest[size_t(r)];
+	}
 	bool isClumpMember(size_t r) const { return bodies[r]->isClumpMember(); }
 	/// Number of rows that are moved here.
 	long movedHere() const { return long(ids.size() - guests.size()); }

@@ -38,9 +38,10 @@ from yade import (
 	Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom, Ig2_RoundPlaten_Sphere_ScGeom,
 	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
 	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
-	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
-	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, Matrix3,
-	NewtonIntegrator, O, RampedTranslationEngine, ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
+	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, JacketPressure,
+	Law2_ScGeom_BondedPhys_Bonded, Law2_ScGeom_ElasticWallPhys_Repulsion,
+	Law2_ScGeom_FrictPhys_CundallStrack, Material, Matrix3, NewtonIntegrator, O, RampedTranslationEngine,
+	ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter, provenance
@@ -51,6 +52,7 @@ from .bonded_jaws import Jaws, brazilian
 from .bonded_loads import Confinement, Platens, ServoPlatens, confine, platens, servo, triaxial
 from .bonded_shear import DirectShear, direct_shear
 from .bonded_stress import mean_stress
+from .jacket import Jacket, jacket
 
 DEFAULT_GAP = packings.BOND_GAP  #: gap up to which spheres are bonded, of the largest radius
 
@@ -374,8 +376,8 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	Spheres of :yref:`BondedMat` meet each other, and walls, round platens, boxes and facets of :yref:`BondedMat`,
 	:yref:`ElasticWallMat` or :yref:`FrictMat`.
 
-	:param platens: :class:`bonded_loads.Platens`, :class:`bonded_loads.Confinement`, or a list of them, whose
-		motion is included.
+	:param platens: :class:`bonded_loads.Platens`, :class:`bonded_loads.Confinement`, :class:`jacket.Jacket`, or a
+		list of them, whose engines are included.
 	:param viscosity: of :yref:`ViscousBodyDamping` [1/s]; 0 leaves it out. ESyS-Particle's tutorial has 2.
 	:param rotational_viscosity: None: equal to viscosity [1/s].
 	:param convention: "consistent", or "esys" for the bonds, the contacts and the moving walls of ESyS-Particle
@@ -472,10 +474,10 @@ def check():
 			"see ddem.bonded.engines()"
 		)
 	for place, engine in enumerate(O.engines):
-		if isinstance(engine, ServoWall) and not order[1] < place < order[2]:
+		if isinstance(engine, (ServoWall, JacketPressure)) and not order[1] < place < order[2]:
 			raise RuntimeError(
-				"wrong order in O.engines: ServoWall must come between InteractionLoop and "
-				"NewtonIntegrator; see ddem.bonded.engines()"
+				f"wrong order in O.engines: {type(engine).__name__} must come between InteractionLoop "
+				"and NewtonIntegrator; see ddem.bonded.engines()"
 			)
 	_check_between()
 	esys = law().convention == "esys"

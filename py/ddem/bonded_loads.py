@@ -13,6 +13,7 @@ from yade import (
 	ServoWall, Vector3, Wall, utils
 )
 
+from .jacket import jacket
 from .loading import checked_legs
 
 _AXES = "xyz"
@@ -234,12 +235,12 @@ class ServoPlatens(Platens):
 	@property
 	def failed(self):
 		"""Whether the sample has given way, and a wall stands still."""
-		return any(wall.failed for wall in self.engines)
+		return any(wall.failed for wall in self.engines if isinstance(wall, ServoWall))
 
 	@property
 	def done(self):
 		"""Whether all legs are done."""
-		return all(wall.done for wall in self.engines)
+		return all(wall.done for wall in self.engines if isinstance(wall, ServoWall))
 
 
 class Confinement:
@@ -293,9 +294,9 @@ def confine(sample, pressure=None, ramp=1e-4, velocity=1.0, axes="xz", stiffness
 	return Confinement(around)
 
 
-def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffness=100e9):
-	"""Platens and walls for a triaxial test of a prism: equal pressure on all sides first, then the platens
-	approach along y while the walls keep it::
+def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffness=100e9, sides="walls"):
+	"""Platens, and walls or a jacket, for a triaxial test: equal pressure on all sides first, then the platens
+	approach along y while the sides keep it::
 
 		test = ddem.bonded.triaxial(sample, pressure=10e6, strain=0.01, duration=2e-3)
 		O.engines = ddem.bonded.engines(test)
@@ -304,7 +305,10 @@ def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffn
 	:param strain: of the platens at the end, from the start [-]
 	:param duration: in which it is reached, after the *ramp* of the pressure [s]
 	:param ramp, velocity, stiffness: as for :func:`confine`
-	:returns: :class:`ServoPlatens` along y with the walls as ``confinement``
+	:param sides: "walls", rigid ones on a prism (:func:`confine`), or "jacket", a flexible one on any convex
+		specimen (:func:`jacket.jacket`)
+	:returns: :class:`ServoPlatens` along y with the walls (:class:`Confinement`) or the jacket
+		(:class:`jacket.Jacket`) as ``confinement``
 	:raises ValueError: numbers out of range. Nothing is appended then.
 	"""
 	for name, value, unit in (
@@ -314,7 +318,13 @@ def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffn
 	):
 		if not (value > 0 and math.isfinite(value)):
 			raise ValueError(f"{name} = {value} {unit} must be positive and finite")
-	around = confine(sample, pressure, ramp, velocity, "xz", stiffness)
+	if sides not in ("walls", "jacket"):
+		raise ValueError(f"sides = '{sides}' is unknown; use 'walls' or 'jacket'")
+	if sides == "jacket":
+		_check_area(sample, None, "y")
+		around = jacket(sample, pressure, ramp)
+	else:
+		around = confine(sample, pressure, ramp, velocity, "xz", stiffness)
 	press = servo(
 		sample, [("stress", pressure, ramp), ("strain", strain, duration)], velocity, "y", None, stiffness
 	)
