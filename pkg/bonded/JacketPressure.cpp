@@ -134,8 +134,8 @@ Real JacketPressure::addForces(BondedSpheres* arrays)
 		if (arrays && arrays->isMovedHere(ids[i])) {
 			const auto    row  = size_t(arrays->rowOf(ids[i]));
 			double* const load = arrays->motion.loadOf(row);
-			for (int axis = 0; axis < 3; axis++)
-				load[axis] += now[i][axis];
+			for (int k = 0; k < 3; k++)
+				load[k] += now[i][k];
 			if (!book) continue;
 			const double* const v = arrays->motion.velocityOf(row);
 			velocity              = { v[0], v[1], v[2] };
