@@ -75,10 +75,9 @@ def main():
 	if options.test == "triaxial":
 		duration += options.pressure_ramp
 	kind = uniaxial.TensionTest if options.test == "tension" else uniaxial.CompressionTest
-	shown = options.pictures or options.vtk
 	test = kind(
 		platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical, rows=options.rows,
-		snapshots=shown
+		snapshots=options.pictures
 	)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)

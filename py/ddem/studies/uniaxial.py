@@ -14,7 +14,7 @@ from ..effect_table import effects
 from ..energy import EnergyBalance
 from ..series import Series
 from .runs import RECORDER, Run
-from .snapshots import SphereSnapshot, TriangleSnapshot
+from .snapshots import SphereMotion, TriangleSnapshot
 
 ROWS = 1000  #: records up to the largest strain, unless told otherwise
 SNAPSHOTS = 100  #: pictures in memory up to the largest strain
@@ -57,8 +57,16 @@ class Specimen:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
 
-	def snapshot(self):
-		return (TriangleSnapshot if self.deformable else SphereSnapshot).of(self.sample, O.time)
+	def look(self):
+		"""What of a snapshot of this moment must be kept now."""
+		return (TriangleSnapshot if self.deformable else SphereMotion).of(self.sample, O.time)
+
+	def snapshots(self, looks):
+		"""The snapshots of what was kept, see :mod:`snapshots`."""
+		if self.deformable:
+			return looks
+		bonds = self.sample.bond_records
+		return [one.snapshot(bonds) for one in looks]
 
 	def figures(self):
 		"""Further figures for the summary."""
@@ -122,7 +130,8 @@ class CompressionTest:
 		if rows < SNAPSHOTS:
 			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
 		self.specimen, self.longest = Specimen(platens.sample), rows
-		self.rows, self.snapshots, self._peak, self._between = [], [], 0.0, snapshots
+		self.rows, self._looks, self._between = [], [], snapshots
+		self._peak, self._low = 0.0, 0
 		self.stopped = self._filed = self.book = None
 		self._booked = book
 
@@ -191,13 +200,14 @@ class CompressionTest:
 			"damage": self.specimen.damage,
 		}
 		if self.book:
-			row["energy_drift"] = self.book.drift
+			row["energy_drift"] = self.book.recorded_drift
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
-		if self._between and len(self.rows) % (self.longest // SNAPSHOTS) == 0:
-			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
-		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
+		due = [len(self.rows) % (self.longest // times) == 0 for times in (FILES, SNAPSHOTS)]
+		if any(due):
+			self._look(files=due[0], snapshot=due[1] and self._between)
 		self._peak = max(self._peak, row["stress"])
-		if self.stop and len(self.rows) > self._held and (stress < self.stop * self._peak).all():
+		self._low = self._low + 1 if row["stress"] < self.stop * self._peak else 0  # records in a row
+		if self.stop and len(self.rows) > self._held and self._low >= self._held:
 			self.stopped = f"stress stayed below {100 * self.stop:g} % of the peak"
 			O.pause()
 		done = O.iter - self._first
@@ -207,10 +217,10 @@ class CompressionTest:
 			f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False
 		)
 
-	def _look(self, files):
+	def _look(self, files, snapshot=True):
 		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
-		if not self.snapshots or self.snapshots[-1].time < O.time:
-			self.snapshots.append(self.specimen.snapshot())
+		if snapshot and (not self._looks or self._looks[-1].time < O.time):
+			self._looks.append(self.specimen.look())
 		if files and self._filed != O.time:
 			self._filed = O.time
 			for recorder in self.recorders:
@@ -230,7 +240,7 @@ class CompressionTest:
 			particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt,
 			steps=O.iter - self._first, wall=wall, busy=busy, recorded=recorded,
-			threads=O.numThreads, series=series, snapshots=self.snapshots,
+			threads=O.numThreads, series=series, snapshots=specimen.snapshots(self._looks),
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
 			extra=specimen.figures(),
