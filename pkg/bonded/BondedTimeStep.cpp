@@ -4,10 +4,12 @@
 
 #include <pkg/bonded/BondedPhys.hpp>
 #include <pkg/bonded/ElasticWall.hpp>
+#include <pkg/bonded/RoundPlaten.hpp>
 #include <pkg/bonded/kernel/BondStableStep.hpp>
 #include <pkg/bonded/kernel/BondWall.hpp>
 
 #include <core/TimeStepper.hpp>
+#include <pkg/common/Box.hpp>
 
 #include <optional>
 #include <sstream>
@@ -131,18 +133,33 @@ namespace {
 		std::vector<std::pair<Body::id_t, Body::id_t>> names;
 	};
 
+	/// Whether a platen is closer to the centre of a sphere than twice its radius; never for other shapes.
+	bool isNear(const Body& platen, const Vector3r& centre, Real radius)
+	{
+		const Vector3r branch = centre - platen.state->pos;
+		if (const auto* wall = dynamic_cast<const Wall*>(platen.shape.get()))
+			return math::abs(branch[wall->axis]) <= 2 * radius;
+		if (const auto* box = dynamic_cast<const Box*>(platen.shape.get())) {
+			const Vector3r local = platen.state->ori.conjugate() * branch;
+			return (local.cwiseAbs() - box->extents).cwiseMax(Vector3r::Zero()).norm() <= 2 * radius;
+		}
+		Real     depth = 0;
+		Vector3r normal;
+		const auto* round = dynamic_cast<const RoundPlaten*>(platen.shape.get());
+		return round && round->overlap(platen.state->se3, centre, radius, depth, normal) && depth >= -radius;
+	}
+
+	/// Platens that spheres may come to touch before anybody looks again.
 	void addElasticWalls(const Scene& scene, Springs& springs)
 	{
 		for (const auto& wallBody : *scene.bodies) {
-			const auto* wall = wallBody ? dynamic_cast<const Wall*>(wallBody->shape.get()) : nullptr;
 			const auto* material
-			        = wall ? dynamic_cast<const ElasticWallMat*>(wallBody->material.get()) : nullptr;
+			        = wallBody ? dynamic_cast<const ElasticWallMat*>(wallBody->material.get()) : nullptr;
 			if (!material) continue;
-			const Real height = wallBody->state->pos[wall->axis];
 			for (const auto& body : *scene.bodies) {
 				const auto* sphere = body ? dynamic_cast<const Sphere*>(body->shape.get()) : nullptr;
 				if (!sphere || !dynamic_cast<const BondedMat*>(body->material.get())) continue;
-				if (math::abs(body->state->pos[wall->axis] - height) > 2 * sphere->radius) continue;
+				if (!isNear(*wallBody, body->state->pos, sphere->radius)) continue;
 				const auto touching = scene.interactions->find(wallBody->id, body->id);
 				if (touching && touching->isReal()) continue; // counted already
 				const Real spring = ddem::wallSpring(sphere->radius, material->stiffness);

@@ -40,10 +40,10 @@ namespace {
 	}
 
 	/// A sphere that a wall has left behind altogether is no contact: walls have met, or a sphere was too fast.
-	void stopBehindWall(Scene& scene, const Interaction& I, Real depth)
+	void stopBehindWall(Scene& scene, const Interaction& I, const char* what, Real depth)
 	{
 		std::ostringstream text;
-		text << "sphere #" << I.getId2() << " is " << depth << " m behind the wall #" << I.getId1()
+		text << "sphere #" << I.getId2() << " is " << depth << " m behind the " << what << " #" << I.getId1()
 		     << " in step " << scene.iter << ", t = " << scene.time
 		     << " s, more than its radius: the platens have met, or it came too fast for the time step; "
 		        "end the run earlier, or load slower";
@@ -134,7 +134,7 @@ bool Law2_ScGeom_ElasticWallPhys_Repulsion::go(shared_ptr<IGeom>& iGeom, shared_
 		           force    = ddem::wallRepulsion(geom.radius2, phys.wallStiffness, distance);
 		phys.normalForce = force * geom.normal;
 		if (!(force > 0)) return false;
-		if (isWall && distance < -geom.radius2) stopBehindWall(*scene, *I, -distance);
+		if (distance < -geom.radius2) stopBehindWall(*scene, *I, isWall ? "wall" : "platen", -distance);
 		stored = 0.5 * force * (geom.radius2 - distance);
 	}
 	const Vector3r force = phys.normalForce + phys.shearForce;

@@ -15,9 +15,9 @@ public:
 
 	// clang-format off
 	YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(ElasticWallMat, Material,
-		"Material of a :yref:`Wall`, :yref:`Box` or :yref:`Facet` that repels particles of :yref:`BondedMat` "
-		"without friction; a wall also holds those that are bonded to it, as the walls of ESyS-Particle do."
-		"\n\n"
+		"Material of a :yref:`Wall`, :yref:`RoundPlaten`, :yref:`Box` or :yref:`Facet` that repels particles "
+		"of :yref:`BondedMat` without friction; a wall also holds those that are bonded to it, as the walls of "
+		"ESyS-Particle do.\n\n"
 		"Errors: ValueError for a stiffness that is not positive, or a negative shear stiffness.",
 		((Real,stiffness,100e9,Attr::triggerPostLoad,
 			"Stiffness :math:`K` of the wall [Pa]; the spring of a contact with a sphere of radius "
@@ -87,8 +87,9 @@ public:
 		"Repulsion of spheres by a :yref:`Wall`, :math:`F=\\pi r K (r-g)` along its normal while the centre's "
 		"distance :math:`g` from it is less than the radius (ESyS-Particle's NRotElasticWall "
 		"[Weatherley2014]_). No friction, no moment. With :yref:`Wall.sense` set, a centre that has passed the "
-		"wall is pushed back all the more; with sense 0 the wall acts on both sides. A :yref:`Box` or a "
-		":yref:`Facet` of that material repels with the overlap of its geometry.\n\n"
+		"wall is pushed back all the more; with sense 0 the wall acts on both sides. A "
+		":yref:`RoundPlaten`, a :yref:`Box` or a :yref:`Facet` of that material repels with the overlap of its "
+		"geometry.\n\n"
 		"A sphere that is bonded to the wall feels :math:`-\\pi r(K u_n+K_s u_t)` instead, of its displacement "
 		":math:`u` relative to the wall, in both directions, at its centre; it never breaks (NRotBondedWall, "
 		"where :math:`K_s=K`).\n\n"

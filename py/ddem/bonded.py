@@ -32,22 +32,26 @@ import warnings
 import numpy as np
 
 from yade import (
-	Bo1_Box_Aabb, Bo1_Facet_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop, BondedMat,
-	BondedNewtonIntegrator, ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom, Ig2_Facet_Sphere_ScGeom,
-	Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom, InsertionSortCollider, InteractionLoop,
-	Ip2_BondedMat_BondedMat_BondedPhys, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys,
-	Ip2_FrictMat_BondedMat_BondedPhys, Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded,
-	Law2_ScGeom_ElasticWallPhys_Repulsion, Law2_ScGeom_FrictPhys_CundallStrack, Material, NewtonIntegrator, O,
-	RampedTranslationEngine, ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
+	Bo1_Box_Aabb, Bo1_Facet_Aabb, Bo1_RoundPlaten_Aabb, Bo1_Sphere_Aabb, Bo1_Wall_Aabb, BondedInteractionLoop,
+	BondedMat, BondedNewtonIntegrator, ElasticWallMat, ForceResetter, Ig2_Box_Sphere_ScGeom,
+	Ig2_Facet_Sphere_ScGeom, Ig2_RoundPlaten_Sphere_ScGeom, Ig2_Sphere_Sphere_ScGeom, Ig2_Wall_Sphere_ScGeom,
+	InsertionSortCollider, InteractionLoop, Ip2_BondedMat_BondedMat_BondedPhys,
+	Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, Ip2_FrictMat_BondedMat_BondedPhys,
+	Ip2_FrictMat_FrictMat_FrictPhys, Law2_ScGeom_BondedPhys_Bonded, Law2_ScGeom_ElasticWallPhys_Repulsion,
+	Law2_ScGeom_FrictPhys_CundallStrack, Material, NewtonIntegrator, O, RampedTranslationEngine, ServoWall, Sphere,
+	Vector3, ViscousBodyDamping, utils
 )
 
 from . import broken_bonds, meter, provenance
 from . import packing as packings
 from .arrays import BodyIds, fixed
+from .bonded_bending import Bending, three_point_bending
+from .bonded_jaws import Jaws, brazilian
 from .bonded_loads import Confinement, Platens, ServoPlatens, confine, platens, servo, triaxial
+from .bonded_shear import DirectShear, direct_shear
+from .bonded_stress import mean_stress
 
-#: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
-DEFAULT_GAP = 0.0025
+DEFAULT_GAP = packings.BOND_GAP  #: gap up to which spheres are bonded, of the largest radius
 #: what the column "mode" of :attr:`BondedSample.bond_records` says of a bond
 HOLDS, TENSION, SHEAR = 0, 1, 2
 #: a row of :attr:`BondedSample.bond_records`
@@ -210,6 +214,26 @@ class BondedSample:
 		if self._shaped is not None:
 			return self._shaped.area(number)
 		return float(np.delete(self.upper - self.lower, number).prod())
+
+	@property
+	def is_prism(self):
+		"""Whether it was packed as a box along the axes, or says no shape, so that its box stands for it."""
+		return self._shaped is None or isinstance(self._shaped.shape, packings.Box)
+
+	@property
+	def volume(self):
+		"""Of the packing's shape at the start, or of its box where it has none [m³]."""
+		return self._shaped.volume if self.is_shaped else float((self.upper - self.lower).prod())
+
+	@property
+	def is_shaped(self):
+		"""Whether its packing says which shape it fills."""
+		return self._shaped is not None
+
+	def is_cylinder(self, axis):
+		"""Whether it was packed as a cylinder along an axis, "x", "y" or "z"."""
+		shape = self._shaped.shape if self.is_shaped else None
+		return isinstance(shape, packings.Cylinder) and abs(shape.axis["xyz".index(axis)]) > 1 - 1e-12
 
 	@property
 	def positions(self):
@@ -385,7 +409,7 @@ def broken_share(bonds, broken, ids):
 def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="consistent"):
 	"""The engines of a bonded scene in their order; append recorders to the list.
 
-	Spheres of :yref:`BondedMat` meet each other, and walls, boxes and facets of :yref:`BondedMat`,
+	Spheres of :yref:`BondedMat` meet each other, and walls, round platens, boxes and facets of :yref:`BondedMat`,
 	:yref:`ElasticWallMat` or :yref:`FrictMat`.
 
 	:param platens: :class:`bonded_loads.Platens`, :class:`bonded_loads.Confinement`, or a list of them, whose
@@ -409,12 +433,16 @@ def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="
 	return [
 		ForceResetter(),
 		InsertionSortCollider(
-			[Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb(), Bo1_Facet_Aabb()], label="collider"
+			[
+				Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Box_Aabb(), Bo1_Facet_Aabb(),
+				Bo1_RoundPlaten_Aabb()
+			],
+			label="collider"
 		),
 		BondedInteractionLoop(
 			[
 				Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Box_Sphere_ScGeom(),
-				Ig2_Facet_Sphere_ScGeom()
+				Ig2_Facet_Sphere_ScGeom(), Ig2_RoundPlaten_Sphere_ScGeom()
 			],
 			[
 				Ip2_BondedMat_BondedMat_BondedPhys(), Ip2_ElasticWallMat_BondedMat_ElasticWallPhys(),

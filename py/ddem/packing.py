@@ -20,11 +20,13 @@ import sys
 import numpy as np
 
 from . import _packing, provenance
-from .shapes import Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle  # noqa: F401: packing.Disc
+from .shapes import Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle, flattened_disc  # noqa: F401
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6}  #: length units of files, in metres
 GENERATORS = ("gengeo", "fill")  #: what packs a prism or a layer
 
+#: gap up to which spheres are bonded, of the largest radius: the tutorial's 0.005 mm for 2 mm
+BOND_GAP = 0.0025
 # overlap and distance to the walls that the packer allows, of the largest radius; the tutorial's 1e-5 mm for 2 mm
 _TOLERANCE = 5e-6
 _FLAT = 1e-9  # a packing thinner than this share of a radius is a layer
@@ -314,6 +316,44 @@ def _read(particles, bonds=None, length_unit="m"):
 		pairs = np.array(pairs, dtype=int).reshape(-1, 2)
 	data = np.array(rows) * unit
 	return Packing(data[:, :3], data[:, 3], bonds=pairs)
+
+
+def notched(packing, depth, x=None, gap=None):
+	"""The packing with a notch from below: no bond crosses the plane across *x* up to *depth* above the lower face.
+
+	A cut without width: its faces still touch in compression, and slip.
+
+	:param packing: :class:`Packing`, a beam along x
+	:param depth: of the notch along y [m]
+	:param x: where it is [m]; None: half way along the box
+	:param gap: spheres closer than this are bonded elsewhere [m]. None: the packing's own list of bonds,
+		or 0.0025 of the largest radius where it has none.
+	:returns: :class:`Packing` with a list of bonds
+	:raises ValueError: a depth that is not positive or not below the height, a plane beside the packing, one that
+		no bond crosses
+	"""
+	height, x = float(packing.size[1]), float(0.5 * (packing.lower + packing.upper)[0] if x is None else x)
+	if not 0 < depth < height:
+		raise ValueError(
+			f"notched: depth = {depth} m must lie between 0 and the height of the packing, {height:.6g} m"
+		)
+	if not packing.lower[0] < x < packing.upper[0]:
+		raise ValueError(
+			f"notched: x = {x} m is not between the ends of the packing, {packing.lower[0]:.6g} and "
+			f"{packing.upper[0]:.6g} m"
+		)
+	pairs = packing.bonds
+	if pairs is None or gap is not None:
+		pairs = packing.neighbours(BOND_GAP * packing.radii.max() if gap is None else gap)
+	one, two = packing.centres[pairs].transpose(1, 0, 2)
+	across = (one[:, 0] < x) != (two[:, 0] < x)
+	share = (x - one[:, 0]) / np.where(across, two[:, 0] - one[:, 0], 1)
+	cut = across & (one[:, 1] + share * (two[:, 1] - one[:, 1]) < packing.lower[1] + depth)
+	if not cut.any():
+		raise ValueError(
+			f"notched: no bond crosses x = {x:.6g} m up to {depth} m above the lower face: nothing to cut"
+		)
+	return Packing(packing.centres, packing.radii, packing.lower, packing.upper, pairs[~cut], packing.shape)
 
 
 def _kept(folder, size, rmin, rmax, seed, fails, generator):

@@ -215,6 +215,26 @@ class Ball(_Shape):
 		return f"the ball of radius {self.radius} m"
 
 
+def flattened_disc(diameter, length, flat=math.radians(30)):
+	"""A disc on its side for the Brazilian test, its axis along z, from y = 0 upwards, with flat ends across y so
+	that it does not crush where it is touched (Wang, Jia, Kou, Zhang, Lindqvist 2004); a :class:`Polyhedron`.
+
+	:param diameter, length: [m]
+	:param flat: angle that each flat end takes [rad]
+	"""
+	half = 0.5 * flat
+	around = [(math.sin(a), math.cos(a)) for a in (2 * math.pi * k / 72 for k in range(72))]
+	level = math.cos(half)
+	corners = [(x, y) for x, y in around if abs(y) < level]
+	corners += [(sx * math.sin(half), sy * level) for sx in (-1, 1) for sy in (-1, 1)]
+	return Polyhedron(
+		[
+			(diameter / 2 * x, diameter / 2 * (y + level), z) for x, y in corners
+			for z in (-length / 2, length / 2)
+		]
+	)
+
+
 class Rectangle(Box):
 	"""A rectangle along the axes, in the plane z = 0."""
 

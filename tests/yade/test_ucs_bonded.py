@@ -19,6 +19,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade.ddem import broken_bonds, packing
 from yade.ddem.series import Series
+from yade.ddem.studies.uniaxial import CompressionTest
 
 DATA = os.path.join(os.path.dirname(__file__), "..", "data", "esys")
 SMALL = ["--radii", "1e-3", "4e-3", "--fails", "500", "--no-progress"]  # 62 spheres
@@ -317,7 +318,7 @@ def test_a_brazilian_disc_splits(perform):
 	]
 	split, _ = perform("--test", "brazilian", "--size", "0.03", "0.03", "0.008", *strong)
 	pulled, _ = perform("--test", "tension", "--size", "0.015", "0.03", "0.008", "--generator", "fill", *strong)
-	assert 0.8 < split["ucs_MPa"] / pulled["tensile_MPa"] < 2.5
+	assert 0.8 < split["splitting_MPa"] / pulled["tensile_MPa"] < 2.5
 	assert split["broken_in_tension"] > 2 * split["broken_in_shear"]
 
 
@@ -378,11 +379,23 @@ def test_options_reach_the_model(job, monkeypatch):
 
 
 @pytest.mark.parametrize("arguments, message", [
-	(["--test", "bending"], "--test: invalid choice: 'bending'"),
+	(["--test", "torsion"], "--test: invalid choice: 'torsion'"),
 	(["--test", "triaxial"], "--pressure: it belongs to --test triaxial, which needs it"),
 	(["--pressure", "1e6"], "--pressure: it belongs to --test triaxial"),
-	(["--test", "oedometer", "--shape", "cylinder"], "--shape: the walls of --test oedometer enclose a prism"),
+	(["--test", "oedometer", "--shape", "cylinder"], "--shape: --test oedometer needs a prism"),
 	(["--test", "brazilian", "--shape", "prism"], "--shape: the Brazilian test splits a disc"),
+	(["--test", "bending", "--span", "0.05"], "--span: 0.05 m must be below the beam's length, 0.05 m"),
+	(["--test", "bending", "--span", "0.049"], "do not lie below a beam 0.05 m long"),
+	(["--test", "bending", "--size", "0.01", "0.02", "0.01"], "--size: 0.01 x 0.02 m is no beam"),
+	(["--test", "bending", "--notch", "0.02"], "--notch: 0.02 m must be below the beam's height, 0.0125 m"),
+	(["--test", "bending", "--shape", "cylinder"], "--shape: --test bending needs a prism"),
+	(["--test", "bending", "--drive", "top"], "--drive: --test bending has no two walls that move"),
+	(["--test", "bending", "--bonded-walls"], "--bonded-walls: there are no walls in a bending test"),
+	(["--test", "shear"], "--normal-stress: it belongs to --test shear, which needs it"),
+	(["--test", "shear", "--normal-stress", "-1"], "--normal-stress: -1 must be positive"),
+	(["--test", "shear", "--normal-stress", "1e6", "--box-gap", "0.01"], "gap = 0.01 m must lie between 0 and half"),
+	(["--span", "0.03"], "--span: it belongs to --test bending"), (["--jaws", "flat"], "--jaws: it belongs to --test brazilian"),
+	(["--test", "brazilian", "--jaws", "round"], "--jaws: invalid choice: 'round'"),
 	(["--convention", "esys", "--criterion", "softening"], "--criterion: bonds of the convention esys"),
 	(["--criterion", "softening", "--tension-energy", "1e-3"], "tensionEnergy = 0.001 J/m² is not above"),
 	(["--convention", "esis"], "--convention: invalid choice: 'esis'"),
@@ -414,7 +427,7 @@ def test_options_reach_the_model(job, monkeypatch):
 	(["--out", "/proc/nowhere"], "--out: cannot write into /proc/nowhere"),
 ])
 def test_bad_options_are_refused_before_anything_runs(job, monkeypatch, capsys, tmp_path, arguments, message):
-	monkeypatch.setattr(job.uniaxial.CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
+	monkeypatch.setattr(CompressionTest, "run", lambda *_, **__: pytest.fail("the test was started"))
 	monkeypatch.chdir(tmp_path)
 	quick = [] if {"--radii", "--particles"} & set(arguments) else SMALL
 	with pytest.raises(SystemExit) as stopped:

@@ -30,19 +30,17 @@ def stress_strain(runs):
 			colour = MODEL_COLOURS[run.model]
 			ax.plot(strain, stress, color=colour, label=run.title)
 			ax.plot(100 * measures.strain_at_peak, measures.ucs / 1e6, "o", color=colour, markersize=3.5)
-			if np.isfinite(measures.young):
+			if np.isfinite(measures.young) and run.wording.modulus:
 				ends = np.array([0.0, 0.9 * measures.ucs])
 				ax.plot(
 					100 * (ends - measures.offset) / measures.young, ends / 1e6, "--", color=colour,
 					linewidth=0.6
 				)
-		ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
-		tension = runs[0].test == "tension"
-		ax.plot(
-			[], [], "o", color="0.4", markersize=3.5,
-			label="peak (tensile strength)" if tension else "peak (UCS)"
-		)
-		_label(ax, "axial strain [%]", "tensile stress [MPa]" if tension else "axial stress [MPa]")
+		words = runs[0].wording
+		if words.modulus:
+			ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
+		ax.plot([], [], "o", color="0.4", markersize=3.5, label=f"peak ({words.peak})")
+		_label(ax, f"{words.strain} [%]", f"{words.stress} [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))
 		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
@@ -55,12 +53,12 @@ def wall_forces(runs):
 	with rc_context(plots.STYLE):
 		for ax, run in zip(axes, runs):
 			time, colour = 1e3 * run.series["time"], MODEL_COLOURS[run.model]
-			ax.plot(time, run.series["force_top"] / 1e3, color=colour, label="top platen")
+			ax.plot(time, run.series["force_top"] / 1e3, color=colour, label=run.wording.ends[0])
 			ax.plot(
 				time, run.series["force_bottom"] / 1e3, color="0.25", linewidth=0.8,
-				linestyle=(0, (3, 1.2)), label="bottom platen"
+				linestyle=(0, (3, 1.2)), label=run.wording.ends[1]
 			)
-			_label(ax, "time [ms]", "force on platen [kN]" if ax is axes[0] else None, run.title)
+			_label(ax, "time [ms]", f"{run.wording.force} [kN]" if ax is axes[0] else None, run.title)
 			ax.set_xlim(left=0)
 			ax.legend()
 	return fig
@@ -76,7 +74,7 @@ def damage(runs):
 			ax.plot(strain, values, color=MODEL_COLOURS[run.model], label=names[run.model])
 			ax.plot(strain[peak], values[peak], "o", color=MODEL_COLOURS[run.model], markersize=3.5)
 		ax.plot([], [], "o", color="0.4", markersize=3.5, label="at the peak stress")
-		_label(ax, "axial strain [%]", "damage of the sample [-]")
+		_label(ax, f"{runs[0].wording.strain} [%]", "damage of the sample [-]")
 		ax.set_xlim(left=0)
 		ax.set_ylim(bottom=0)
 		fig.legend(loc="outside upper center", ncols=2, columnspacing=1.5)
@@ -137,7 +135,7 @@ def energy(runs):
 					strain, base, base + values, color=_PART_COLOURS[part], linewidth=0, alpha=0.85
 				)
 				base = base + values
-			(shown["work of the platens"],) = book.plot(
+			(shown[f"work of the {run.wording.loads}"],) = book.plot(
 				strain, run.energy("input"), color="black", linewidth=0.9
 			)
 			_label(book, None, "energy [J]" if book is axes[0, 0] else None, run.title)
@@ -146,7 +144,7 @@ def energy(runs):
 				np.maximum(100 * np.abs(run.series["energy_drift"]) / run.energy_through, 1e-10),
 				color=MODEL_COLOURS[run.model],
 			)
-			_label(error, "axial strain [%]", "error [%]" if error is axes[1, 0] else None)
+			_label(error, f"{run.wording.strain} [%]", "error [%]" if error is axes[1, 0] else None)
 			book.set_xlim(0, strain[-1])
 			book.set_ylim(bottom=0)
 		_same_limits([ax for ax in axes[1]])
@@ -217,9 +215,29 @@ def engines(runs):
 	return fig
 
 
+def also(runs):
+	"""What a kind of test records beside stress and strain, over the last of it; None where that is nothing."""
+	if not runs[0].wording.also:
+		return None
+	*columns, over = runs[0].wording.also
+	with rc_context(plots.STYLE):
+		fig = plots.figure(plots.COLUMN, 65 if len(columns) == 1 else 15 + 35 * len(columns))
+		axes = fig.subplots(len(columns), 1, sharex=True, squeeze=False)[:, 0]
+		for ax, column in zip(axes, columns):
+			for run in runs:
+				ax.plot(
+					over.factor * run.series[over.name], column.factor * run.series[column.name],
+					color=MODEL_COLOURS[run.model]
+				)
+			_label(ax, over.label if ax is axes[-1] else None, column.label)
+			ax.margins(x=0)
+	return fig
+
+
 #: pictures of the report, in order
 ALL = {
-	"stress_strain": stress_strain, "damage": damage, "broken_bonds": broken_bonds, "wall_forces": wall_forces,
+	"stress_strain": stress_strain, "also": also, "damage": damage, "broken_bonds": broken_bonds,
+	"wall_forces": wall_forces,
 	"evolution": evolution,
 	"final_damage": final_damage, "rotation": rotation, "energy": energy, "engines": engines
 }
@@ -255,8 +273,14 @@ def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
 	"""A row of pictures a model with the stage above each and a colour bar at the side, or one row with a picture
 	a model and colour bars below; all of the same piece of the plane.
 	"""
-	rows, columns = (len(runs), max(map(len, snapshots))) if stages else (1, len(runs))
 	low, high = _window(snapshots)
+	wide = (high - low)[0] > 1.5 * (high - low)[1]  # as a beam
+	rows, columns = (len(runs), max(map(len, snapshots))) if stages else (1, len(runs))
+	below = stages and wide and len(runs) == 1  # the stages one below the other
+	if below:
+		rows, columns, width = columns, rows, plots.COLUMN
+	elif wide:
+		width = max(width, plots.COLUMN)
 	across = (width - (29 if stages else 13) - 4 * (columns - 1)) / columns  # of one picture [mm]
 	with rc_context(plots.STYLE):
 		fig = plots.figure(
@@ -267,7 +291,7 @@ def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
 			ax.set_visible(False)
 		for row, (run, shown) in enumerate(zip(runs, snapshots)):
 			for column, snapshot in enumerate(shown):
-				ax = axes[row, column] if stages else axes[0, row]
+				ax = axes[column, row] if below else axes[row, column] if stages else axes[0, row]
 				ax.set_visible(True)
 				draw(snapshot, ax)
 				ax.set_xlim(1e3 * low[0], 1e3 * high[0])
@@ -277,7 +301,7 @@ def _maps(runs, snapshots, width, draw, label, stages=False, own_scales=False):
 			ax.set_ylabel(None)
 		for ax in axes[:-1].flat:
 			ax.set_xlabel(None)
-		if stages:
+		if stages and not below:
 			for ax, run in zip(axes[:, 0], runs):
 				ax.set_ylabel(f"{run.title}\n{ax.get_ylabel()}")
 		look = (

@@ -44,7 +44,7 @@ ROWS = (
 	("bytes_per_particle", "memory per particle", "B", 1, "{:,.0f}"),
 )
 #: rows that are left out where no run has them
-_IF_ANY = {"bonds", "ucs_MPa", "tensile_MPa", "broken_in_tension", "broken_in_shear"}
+_IF_ANY = {"bonds", "ucs_MPa", "tensile_MPa", "young_GPa", "broken_in_tension", "broken_in_shear"}
 
 
 class Report:
@@ -99,8 +99,9 @@ class Report:
 	def table_rows(self):
 		"""(text, unit, one formatted value a run) for the table; None for a line."""
 		summaries = [run.summary() for run in self.runs]
-		rows = []
-		for row in ROWS:
+		rows, words = [], self.runs[0].wording
+		place = [row and row[0] for row in ROWS].index("young_GPa")
+		for row in (*ROWS[:place], *words.rows, *ROWS[place:]):
 			if row is None:
 				rows.append(None)
 				continue

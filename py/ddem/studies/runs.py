@@ -8,6 +8,7 @@ import numpy as np
 
 from ..series import Series
 from .measures import Strength, strength
+from .wording import COMPRESSION, Wording
 
 #: entries of the energy book by part, in the order in which pictures stack them
 ENERGY_PARTS = {
@@ -50,6 +51,7 @@ class Run:
 	test: str = "compression"  # or "tension", where stress, strain and forces are positive in tension
 	effects: list = field(default_factory=list)  # of the scene at the end, see effect_table.EffectTable.rows
 	broken: np.ndarray = None  # records of the broken bonds (broken_bonds.DTYPE), None where there are no bonds
+	wording: Wording = COMPRESSION  # what this kind of test calls what it measures
 	recorded: float = None  # processor time of the recording [s]; None: as by the clock
 	bytes_per_particle: float = None  # see meter.bytes_per_particle; None where it is not known
 
@@ -113,10 +115,10 @@ class Run:
 			"bytes_per_particle": self.bytes_per_particle,
 			"engines": plain_costs(self.engine_costs()),
 			"test": self.test,
-			"ucs_MPa": measures.ucs / 1e6 if self.test == "compression" else None,
-			"tensile_MPa": measures.ucs / 1e6 if self.test == "tension" else None,
+			"ucs_MPa": None,
+			"tensile_MPa": None,
 			"peak_passed": measures.peaked,
-			"young_GPa": measures.young / 1e9,
+			"young_GPa": measures.young / 1e9 if self.wording.modulus == "young_GPa" else None,
 			"strain_at_peak": measures.strain_at_peak,
 			"damage_at_peak": float(damage[measures.peak]),
 			"damage_at_end": float(damage[-1]),
@@ -124,6 +126,8 @@ class Run:
 			"stress_at_end_MPa": self.series.last("stress") / 1e6,
 			"energy_error": self.energy_error,
 			"stopped": self.stopped,
+			self.wording.strength: measures.ucs / 1e6,
+			**({self.wording.modulus: measures.young / 1e9} if self.wording.modulus else {}),
 			"effects": self.effects,
 			**self.extra,
 		}

@@ -15,6 +15,7 @@ from ..energy import EnergyBalance
 from ..series import Series
 from .runs import RECORDER, Run
 from .snapshots import SphereMotion, TriangleSnapshot
+from .wording import COMPRESSION, TENSION
 
 ROWS = 1000  #: records up to the largest strain, unless told otherwise
 SNAPSHOTS = 100  #: pictures in memory up to the largest strain
@@ -113,7 +114,7 @@ class CompressionTest:
 		that is not a number
 	"""
 
-	kind = "compression"
+	kind, wording = "compression", COMPRESSION
 	sense = 1  #: in which stress, strain and forces of the platens, positive in compression, are recorded
 
 	def __init__(
@@ -198,6 +199,7 @@ class CompressionTest:
 				for name in ("strain", "stress", "force_top", "force_bottom")
 			},
 			"damage": self.specimen.damage,
+			**{column.name: getattr(self.platens, column.name) for column in self.wording.also},
 		}
 		if self.book:
 			row["energy_drift"] = self.book.recorded_drift
@@ -228,7 +230,9 @@ class CompressionTest:
 
 	def _result(self, wall, busy, recorded):
 		units = {
-			"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N", "damage": "-"
+			"time": "s", "strain": "-", "stress": "Pa", "force_top": "N", "force_bottom": "N",
+			"damage": "-",
+			**{column.name: column.unit for column in self.wording.also}
 		}
 		names = dict.fromkeys(name for row in self.rows for name in row)
 		series = Series(**{name: units.get(name, "J") for name in names})
@@ -244,7 +248,8 @@ class CompressionTest:
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
 			extra=specimen.figures(),
-			test=self.kind, broken=specimen.broken, effects=effects().rows(), bytes_per_particle=self._bytes
+			test=self.kind, wording=self.wording, broken=specimen.broken, effects=effects().rows(),
+			bytes_per_particle=self._bytes
 		)
 
 
@@ -252,4 +257,4 @@ class TensionTest(CompressionTest):
 	"""The same with platens that pull (a negative velocity): stress, strain and forces are positive in tension, and
 	the strength is that in tension."""
 
-	kind, sense = "tension", -1
+	kind, wording, sense = "tension", TENSION, -1
