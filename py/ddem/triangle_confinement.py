@@ -45,7 +45,7 @@ def biaxial(block, pressure, velocity, ramp=0.0, lateral="free", both=False):
 	:param block: :class:`Block`, a rectangle
 	:param pressure: p, on both sides [Pa]
 	:param velocity, ramp, lateral, both: as for :func:`loading.platens`
-	:returns: :class:`loading.Platens` with the pressure among its ``engines``
+	:returns: :class:`loading.Platens` with the pressure among its ``engines``, and as ``pressure`` [Pa]
 	:raises ValueError: as :func:`loading.platens`; a pressure that is not positive, or another one than that of the
 		block. Nothing is held then.
 	"""
@@ -63,7 +63,7 @@ def biaxial(block, pressure, velocity, ramp=0.0, lateral="free", both=False):
 			)
 	loads = [pressure_on(block, side, pressure) for side in _SIDES]
 	made = platens(block, velocity, ramp, lateral, both)
-	made.engines = [*made.engines, *loads]
+	made.engines, made.pressure = [*made.engines, *loads], pressure
 	return made
 
 

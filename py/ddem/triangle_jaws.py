@@ -44,18 +44,34 @@ def brazilian(block, diameter, angle, velocity, ramp=0.0, both=True):
 	return Jaws(block, diameter, angle, velocity, ramp, both)
 
 
-def brazilian_disc(diameter, size, angle=None, seed=None):
-	"""Mesh of a disc about the origin; with flat ends of that angle 2α [degree], or round.
+def brazilian_disc(diameter, size, angle, flat=True, seed=None):
+	"""Mesh of a disc about the origin for jaws of that angle 2α: with flat ends, or round with a corner of the
+	polygon at each end of the arcs. At the jaws triangles are so small that at least four lie side by side.
 
-	:param diameter, size: of the disc and of its triangles [m]
+	:param diameter, size: of the disc, and of its triangles away from the jaws [m]
+	:param angle: of each arc or flat, 2α [degree]
+	:raises ValueError: numbers out of range
 	"""
-	corners = max(24, 4 * round(math.pi * diameter / size / 4))
-	if angle is None:
-		return meshes.polygon(meshes.disc(0, 0, 0.5 * diameter, corners), size=size, seed=seed)
-	half = math.radians(angle) / 2
-	arc = np.linspace(half, math.pi - half, max(3, round(corners / 2 * (1 - angle / 180))))
-	side = np.column_stack([np.sin(arc), np.cos(arc)])
-	return meshes.polygon(0.5 * diameter * np.vstack([side, -side]), size=size, seed=seed)
+	if not 0 < size <= 0.25 * diameter:
+		raise ValueError(
+			f"brazilian_disc: size = {size} m must be positive and not above a quarter of the diameter of "
+			f"{diameter} m"
+		)
+	if not 0 < angle < 90:
+		raise ValueError(f"brazilian_disc: angle = {angle} degrees must lie between 0 and 90")
+	radius, half = 0.5 * diameter, math.radians(angle) / 2
+	fine = min(size, 0.5 * radius * half)
+	side = np.linspace(half, math.pi - half, math.ceil(radius * (math.pi - 2 * half) / size) + 1)
+	arcs = [side, side + math.pi]
+	if not flat:
+		jaw = np.linspace(-half, half, 5)[1:-1]
+		arcs = [jaw, side, jaw + math.pi, side + math.pi]
+	around = np.concatenate(arcs)
+	near = lambda x, y: math.hypot(max(0.0, abs(x) - radius * math.sin(half)), radius * math.cos(half) - abs(y))
+	return meshes.polygon(
+		radius * np.column_stack([np.sin(around), np.cos(around)]),
+		size=size if fine == size else lambda x, y: min(size, fine + 0.25 * near(x, y)), seed=seed
+	)
 
 
 class Jaws(Platens):

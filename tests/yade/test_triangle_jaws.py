@@ -31,7 +31,7 @@ def test_hondros_tends_to_line_loads():
 def test_uniform_pressure_on_two_arcs_makes_the_stress_of_hondros():
 	angle, pressure = 20, 10e6
 	half = math.radians(angle) / 2
-	block = ddem.append(ddem.brazilian_disc(D, size=0.002), elastic(), thickness=THICKNESS)
+	block = ddem.append(ddem.brazilian_disc(D, 0.002, angle, flat=False), elastic(), thickness=THICKNESS)
 	arcs = lambda x, y: np.abs(x) <= D / 2 * math.sin(half) + 1e-9
 	x, y = block.mesh.nodes.T
 	for end in (np.argmax(y), np.argmin(y)):
@@ -50,11 +50,12 @@ def test_uniform_pressure_on_two_arcs_makes_the_stress_of_hondros():
 	assert stress_at(block, (0, 0), 0.15 * D) / unit == pytest.approx(hondros(loaded), rel=0.02)
 
 
-@pytest.mark.parametrize("flat", [None, 20])
+@pytest.mark.parametrize("flat", [False, True])
 def test_jaws_that_move_as_one_press_as_a_rigid_punch(flat):
-	"""The force of a rigid punch on a half plane (Sadowsky 1928); that the disc is none adds a per cent or two."""
+	"""The force of a rigid punch on a half plane (Sadowsky 1928);
+	that the disc is none adds up to three per cent."""
 	angle = 20
-	block = ddem.append(ddem.brazilian_disc(D, size=0.002, angle=flat), elastic(), thickness=THICKNESS)
+	block = ddem.append(ddem.brazilian_disc(D, 0.002, angle, flat), elastic(), thickness=THICKNESS)
 	jaws = ddem.brazilian(block, D, angle, velocity=0.05)
 	rested(block, jaws.engines)
 	O.run(200, True)
@@ -63,12 +64,12 @@ def test_jaws_that_move_as_one_press_as_a_rigid_punch(flat):
 	ddem.relax(1e-5)
 	assert jaws.force_top == pytest.approx(jaws.force_bottom, rel=1e-3)
 	assert jaws.area == pytest.approx(math.pi / 2 * D * THICKNESS)
-	assert jaws.centre_stress / jaws.stress == pytest.approx(pressed(angle), rel=0.025)
+	assert jaws.centre_stress / jaws.stress == pytest.approx(pressed(angle), rel=0.03)
 	assert jaws.splitting_stress == jaws.centre_stress[0] > 0
 
 
 def test_bad_numbers_are_refused():
-	block = ddem.append(ddem.brazilian_disc(D, size=0.01), elastic())
+	block = ddem.append(ddem.brazilian_disc(D, 0.01, 20), elastic())
 	for options, message in (
 		({"angle": 90}, "angle = 90 degrees"), ({"diameter": 0.0}, "diameter = 0.0 m"),
 		({"velocity": -1.0}, "only push"), ({"angle": 0.1}, "no edge of the border")
@@ -76,3 +77,16 @@ def test_bad_numbers_are_refused():
 		with pytest.raises(ValueError, match=message):
 			ddem.brazilian(block, **{"diameter": D, "angle": 20, "velocity": 1.0, **options})
 	assert not any(set("xy") & set(O.bodies[i].state.blockedDOFs) for i in block.node_ids)
+
+
+def test_a_mesh_has_at_least_four_triangles_at_each_jaw_and_its_diameter():
+	for flat in (False, True):
+		mesh = ddem.brazilian_disc(D, 0.005, 10, flat)
+		half = math.radians(5)
+		across = D / 2 * math.sin(half) + 1e-9
+		top = mesh.boundary(lambda x, y: (np.abs(x) <= across) & (y > 0))
+		assert len(top) >= 5 and np.ptp(mesh.nodes[top, 0]) == pytest.approx(D * math.sin(half))
+		assert np.ptp(mesh.nodes[:, 1]) == pytest.approx(D * (math.cos(half) if flat else 1))
+	for options, message in (({"size": 0.02}, "size = 0.02 m"), ({"angle": 0}, "angle = 0 degrees")):
+		with pytest.raises(ValueError, match=message):
+			ddem.brazilian_disc(**{"diameter": D, "size": 0.002, "angle": 20, **options})
