@@ -360,6 +360,7 @@ def _bonded(sample):
 	}
 	rows = sample.rows(np.column_stack([bonds["id1"], bonds["id2"]]))
 	there = (rows >= 0).all(axis=1)  # not of a sphere that was erased
+	there = slice(None) if there.all() else there  # which copies nothing
 	held = {
 		name: bonds[column][there] for name, column in (
 			("state (0 holds, 1 tension, 2 shear)", "mode"), ("radius [m]", "radius"),

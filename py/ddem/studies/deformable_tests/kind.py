@@ -15,7 +15,7 @@ class DeformableTest:
 
 	name = None  #: of --test
 	about = None  #: for the help of --test
-	velocity = 1.0  #: of what moves, unless told otherwise [m/s]; see :attr:`strain`
+	velocity = 1.0  #: of what moves, unless told otherwise [m/s]; see ``strain``
 	ramp = 1e-4  #: time over which that speed grows, unless told otherwise [s]
 	strain = 1e-2  #: largest one, unless told otherwise [-]
 	stop = 0.2  #: the test ends when the stress stays below this part of the peak, unless told otherwise; 0: never
@@ -27,10 +27,10 @@ class DeformableTest:
 	two_platens = True  #: whether --drive says which of two platens moves
 	sense = 1  #: -1: the platens pull
 	record = CompressionTest  #: keeps the record and stops the test
-	modulus = "E/(1 − ν²)"  #: what :meth:`elastic_modulus` is
+	modulus = "E/(1 − ν²)"  #: what ``elastic_modulus`` is
 
 	def add_options(self, group):
-		"""Add the options in :attr:`own` to a group of a parser."""
+		"""Add the options in ``own`` to a group of a parser."""
 
 	def check(self, options, refuse):
 		"""Call *refuse* with a text about options that do not go together."""
@@ -78,7 +78,7 @@ class DeformableTest:
 		return options.velocity * (2 if self.two_platens and options.drive == "both" else 1)
 
 	def elastic_modulus(self, young, poisson):
-		"""Slope of stress over strain of an elastic sample [Pa], see :attr:`modulus`;
+		"""Slope of stress over strain of an elastic sample [Pa], see ``modulus``;
 		None where there is none."""
 		return plane_strain_modulus(young, poisson)
 
