@@ -1,12 +1,15 @@
 # GPL v2 or later, see LICENSE.
-"""Crush, pull apart, confine or split one sample of bonded spheres: generated, or from files.
+"""Crush, pull apart, confine, split, bend or shear one sample of bonded spheres: generated, or from files.
 
 Run:      scripts/ddem run scripts/ucs_bonded.py                    (compression, consistent bonds, rock density;
                                                                     a quarter of a minute)
           scripts/ddem run scripts/ucs_bonded.py --convention esys  (bonds, contacts,
                                                                     walls and masses of ESyS-Particle's tutorial)
           scripts/ddem run scripts/ucs_bonded.py --test tension
-          scripts/ddem run scripts/ucs_bonded.py --test triaxial --pressure 20e6     (or oedometer, brazilian)
+          scripts/ddem run scripts/ucs_bonded.py --test triaxial --pressure 20e6           (or oedometer)
+          scripts/ddem run scripts/ucs_bonded.py --test brazilian --jaws curved --size 0.03 0.03 0.01
+          scripts/ddem run scripts/ucs_bonded.py --test bending --notch 0.003 --generator fill
+          scripts/ddem run scripts/ucs_bonded.py --test shear --normal-stress 20e6
           scripts/ddem run scripts/ucs_bonded.py --shape cylinder --criterion softening --scatter 8
           scripts/ddem run scripts/ucs_bonded.py --particles P.csv --bonds B.csv --length-unit mm
           scripts/ddem run scripts/ucs_bonded.py --help             (every parameter of model and test)

@@ -34,7 +34,8 @@ def three_point_bending(sample, span, velocity, ramp=0.0, strip=None, stiffness=
 	:param strip: width of supports and load along the beam [m]. None: two mean radii, or a tenth of the height if
 		that is more.
 	:param stiffness: K of the strips [Pa]; a sphere of radius r feels the spring π r K. None: a tenth of the
-		Young's modulus of the bonds, which makes the strips' resistance to rotation small.
+		Young's modulus of the bonds: what the strips resist to rotation then stiffens a beam three times as
+		long as high by less than a hundredth; strips as stiff as the bonds do so by a tenth.
 	:param notch: depth of the notch beneath the load [m], which :func:`packing.notched` has made; stresses refer to
 		the section above it.
 	:returns: :class:`Bending`; hand it to :func:`bonded.engines`
@@ -147,6 +148,27 @@ class Bending:
 		return [self.sample.ids[rows] for rows in found]
 
 	@property
+	def outlines(self):
+		"""Lines (n, 2) [m] in the plane x, y that show supports and load in pictures."""
+		lower, middle = float(self.sample.lower[1]), float(0.5 * (self.sample.lower + self.sample.upper)[0])
+		wide, tall = max(0.5 * self.strip, 0.06 * self.height), 0.12 * self.height
+		triangle = np.array([[0, 0], [-wide, -tall], [wide, -tall], [0, 0]])
+		plate = O.bodies[self.load].state
+		face = float(plate.pos[1] - 0.5 * self.height)
+		notch = [[middle, lower], [middle, lower + self.notch]]
+		return [np.array(notch)] * (self.notch > 0) + [
+			triangle + [middle - 0.5 * self.span, lower], triangle + [middle + 0.5 * self.span, lower],
+			[middle, face] + np.array(
+				[
+					[-0.5 * self.strip, tall],
+					[-0.5 * self.strip, 0],
+					[0.5 * self.strip, 0],
+					[0.5 * self.strip, tall],
+				]
+			)
+		]
+
+	@property
 	def section(self):
 		"""Depth and height (2,) of the section above the notch [m]."""
 		return self.depth, self.height - self.notch
@@ -190,8 +212,8 @@ class Bending:
 
 	@property
 	def strain(self):
-		"""Of the lower face of a slender elastic beam with that deflection, 6 δ h/L² [-]."""
-		return 6 * self.deflection * self.section[1] / self.span**2
+		"""Of the lower face of a slender elastic beam without a notch with that deflection, 6 δ h/L² [-]."""
+		return 6 * self.deflection * self.height / self.span**2
 
 
 def timoshenko_deflection(load, span, young, poisson, depth, height):

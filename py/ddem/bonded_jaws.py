@@ -79,6 +79,20 @@ class Jaws(Platens):
 		self.area = area  #: π D L/2 [m²]
 
 	@property
+	def outlines(self):
+		"""Lines (n, 2) [m] in the plane x, y that show the jaws in pictures."""
+		angles = np.linspace(-_HALF_ANGLE, _HALF_ANGLE, 25)
+		lines = []
+		for jaw, up in ((self.bottom, -1), (self.top, 1)):
+			centre, radius = O.bodies[jaw].state.pos, O.bodies[jaw].shape.radius
+			lines.append(
+				np.column_stack(
+					[centre[0] + radius * np.sin(angles), centre[1] + up * radius * np.cos(angles)]
+				)
+			)
+		return lines
+
+	@property
 	def strain(self):
 		"""Approach of the jaws over the diameter [-]."""
 		bottom, top = (O.bodies[jaw].state.displ()[1] for jaw in (self.bottom, self.top))

@@ -10,6 +10,8 @@ The sample is sheared along x, halfway up its height y. SI units.
 """
 import math
 
+import numpy as np
+
 from yade import (
 	ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine, ServoWall, utils
 )
@@ -128,6 +130,23 @@ class DirectShear:
 		self.engines = [normal, drive]
 		self.length, self.height, depth = (float(s) for s in sample.upper - sample.lower)
 		self.area = self.length * depth  #: of the plane of shear at the start [m²]
+
+	@property
+	def outlines(self):
+		"""Lines (n, 2) [m] in the plane x, y that show both halves of the box in pictures."""
+		lines = []
+		for (end, left, right), up in ((self.lower, False), (self.upper, True)):
+			face = float(O.bodies[end].state.pos[1])
+			faces = [
+				float(O.bodies[side].state.pos[0] + out * O.bodies[side].shape.extents[0])
+				for side, out in ((left, 1), (right, -1))
+			]
+			place, extents = O.bodies[left].state.pos[1], O.bodies[left].shape.extents[1]
+			inner = float(place - extents if up else place + extents)
+			lines.append(
+				np.array([[faces[0], inner], [faces[0], face], [faces[1], face], [faces[1], inner]])
+			)
+		return lines
 
 	@property
 	def force_top(self):

@@ -15,6 +15,7 @@ from ddem.reports.uniaxial import Report
 from ddem.series import Series
 from ddem.studies.runs import Run, cost_ratios
 from ddem.studies.snapshots import SphereSnapshot, TriangleSnapshot, crack_traces
+from ddem.studies.wording import TENSION
 
 KEYS = {
 	"particles", "degrees_of_freedom", "dt_s", "steps", "wall_s", "ns_per_particle_step", "ucs_MPa", "young_GPa",
@@ -252,7 +253,7 @@ def test_broken_bonds_have_a_picture_and_a_file(runs, tmp_path):
 
 def test_tension_has_a_strength_of_its_own(runs, tmp_path):
 	run = runs[0]
-	run.test = "tension"
+	run.test, run.wording = "tension", TENSION
 	figures = run.summary()
 	assert (figures["test"], figures["ucs_MPa"], figures["tensile_MPa"]) == ("tension", None, pytest.approx(60))
 	made = report([run], tmp_path)

@@ -105,6 +105,16 @@ def test_a_packed_beam_bends_as_timoshenko_says():
 	assert bending.strain == pytest.approx(6 * bending.deflection * height / 0.028**2, rel=1e-12)
 
 
+def test_strips_hardly_resist_rotation():
+	"""Ten times as soft, they let the same beam bend by less than a hundredth more."""
+	bent = []
+	for share in (0.01, 0.1):
+		bending = ddem.bonded.three_point_bending(beam(1), 0.028, 0.05, ramp=1e-4, stiffness=share * YOUNG)
+		run(bending, 4e-4)
+		bent.append(bending.deflection / bending.force_top)
+	assert 1 < bent[0] / bent[1] < 1.01
+
+
 def test_timoshenkos_formula():
 	"""Slender: P L³/48EI; and shear adds P L/(4 κ G A), κ = 5/6 for ν = 0."""
 	assert timoshenko_deflection(1, 1, 1, 0, 1, 1e-3) == pytest.approx(1 / (48 * 1e-9 / 12), rel=1e-5)

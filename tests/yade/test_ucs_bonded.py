@@ -322,6 +322,90 @@ def test_a_brazilian_disc_splits(perform):
 	assert split["broken_in_tension"] > 2 * split["broken_in_shear"]
 
 
+STRONG = [
+	"--criterion", "parallel", "--moment-contribution", "0", "--cohesion", "400e6", "--tensile-strength", "20e6",
+	"--radii", "0.8e-3", "2e-3"
+]
+
+
+def test_jaws_of_the_brazilian_test(perform):
+	"""All three split the disc at stresses of the same kind; the report says which it was."""
+	strengths = {}
+	for jaws, words in (("curved", "of 18 mm radius"), ("flat", "on a round disc")):
+		figures, folder = perform(
+			"--test", "brazilian", "--jaws", jaws, "--size", "0.024", "0.02", "0.008", "--velocity", "0.25",
+			*STRONG,
+			*BARE
+		)
+		page = (folder / "report.html").read_text(encoding="utf-8")
+		for text in ("Brazilian test of bonded spheres", "splitting tensile strength", words):
+			assert text in page
+		assert figures["test"] == "brazilian" and figures["young_GPa"] is None and figures["ucs_MPa"] is None
+		strengths[jaws] = figures["splitting_MPa"]
+	assert 0.5 < strengths["flat"] / strengths["curved"] < 1.5
+
+
+def test_bending_and_its_notch(perform):
+	quick = [
+		"--test", "bending", "--size", "0.036", "0.009", "0.009", "--radii", "0.7e-3", "1.6e-3", "--generator",
+		"fill",
+		"--velocity", "0.3", *BARE
+	]
+	whole, folder = perform(*quick)
+	series = Series.read(folder / "rigid.csv")
+	# 3PL/(2bh²) of the default span, 0.8 of the length; 6δh/L²
+	np.testing.assert_allclose(
+		series["stress"], 3 * series["force_top"] * 0.0288 / (2 * 0.009**3), rtol=1e-9, atol=1
+	)
+	np.testing.assert_allclose(
+		series["strain"], 6 * series["deflection"] * 0.009 / 0.0288**2, rtol=1e-9, atol=1e-12
+	)
+	assert whole["flexural_MPa"] == pytest.approx(1e-6 * series["stress"].max())
+	assert whole["flexural_modulus_GPa"] > 20 and whole["young_GPa"] is None and whole["span_m"] == 0.0288
+	assert whole["broken_in_tension"] > whole["broken_in_shear"]
+	page = (folder / "report.html").read_text(encoding="utf-8")
+	for text in (
+		"Three-point bending of bonded spheres",
+		"flexural strength",
+		"flexural modulus",
+		"speed of the load",
+	):
+		assert text in page
+	assert "UCS" not in page and "Uniaxial" not in page
+	notched, folder = perform(*quick, "--notch", "0.003")
+	assert notched["bonds"] < whole["bonds"] and "flexural_modulus_GPa" not in notched
+	assert Series.read(folder / "rigid.csv")["force_top"].max() < 0.85 * series["force_top"].max()
+	assert "depth of the notch" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_direct_shear(perform):
+	quick = [
+		"--test", "shear", "--size", "0.016", "0.01", "0.008", "--radii", "0.7e-3", "1.6e-3", "--generator",
+		"fill",
+		"--velocity", "0.4", "--strain", "0.015", "--viscosity", "1e4", *BARE
+	]
+	peaks = []
+	for stress in ("5e6", "30e6"):
+		figures, folder = perform(*quick, "--normal-stress", stress)
+		series = Series.read(folder / "rigid.csv")
+		assert figures["shear_MPa"] == pytest.approx(1e-6 * series["stress"].max())
+		assert figures["normal_stress_MPa"] == pytest.approx(1e-6 * float(stress))
+		assert series["displacement"][-1] == pytest.approx(0.015 * 0.016, rel=0.02)
+		last = series["strain"] >= 0.8 * series["strain"].max()
+		assert figures["residual_MPa"] == pytest.approx(1e-6 * series["stress"][last].mean())
+		assert figures["residual_MPa"] < figures["shear_MPa"]
+		peaks.append(figures["shear_MPa"])
+	assert peaks[0] < peaks[1]
+	page = (folder / "report.html").read_text(encoding="utf-8")
+	for text in (
+		"Direct shear of bonded spheres",
+		"peak shear strength",
+		"residual shear stress",
+		"kept by a servo",
+	):
+		assert text in page
+
+
 def test_cylinders_and_criteria(perform):
 	figures, folder = perform(
 		"--shape", "cylinder", "--criterion", "softening", "--scatter", "6", "--tension-energy", "200",

@@ -127,7 +127,7 @@ def notes(options, platens, run):
 			f"{100 * closing_speed(options) / wave:.3f} %. Where the two wall forces differ, the test is "
 			"not quasi-static."
 		)
-	elif run.wording.modulus is None:
+	elif run.wording.modulus != "young_GPa":
 		peak = run.strength.peak
 		top, bottom = (float(run.series[name][peak]) for name in ("force_top", "force_bottom"))
 		said.append(

@@ -254,6 +254,7 @@ def _draw_damage(snapshot, ax):
 			snapshot.centres, snapshot.radii, snapshot.damage, "", ax=ax, limits=(0, 1), colorbar=False,
 			cracks=snapshot.cracks
 		)
+		_draw_loads(snapshot, ax)
 
 
 def _draw_rotation(snapshot, ax):
@@ -263,6 +264,11 @@ def _draw_rotation(snapshot, ax):
 		plots.field((snapshot.nodes, snapshot.triangles), snapshot.rotation, "", **look)
 	else:
 		plots.spheres(snapshot.centres, snapshot.radii, snapshot.rotation, "", **look)
+		_draw_loads(snapshot, ax)
+
+
+def _draw_loads(snapshot, ax):
+	ax.add_collection(LineCollection([1e3 * line for line in snapshot.loads], colors="0.25", linewidths=1.0))
 
 
 def _width(runs):
@@ -331,8 +337,12 @@ def _window(snapshots):
 	def places(snapshot):
 		return snapshot.nodes if isinstance(snapshot, TriangleSnapshot) else snapshot.centres[:, :2]
 
-	low = np.min([np.quantile(places(s), 0.01, axis=0) for row in snapshots for s in row], axis=0)
-	high = np.max([np.quantile(places(s), 0.99, axis=0) for row in snapshots for s in row], axis=0)
+	ends = [np.quantile(places(s), (0.01, 0.99), axis=0) for row in snapshots for s in row]
+	ends += [
+		np.array([line.min(axis=0), line.max(axis=0)])
+		for row in snapshots for s in row for line in getattr(s, "loads", ())
+	]
+	low, high = np.min([e[0] for e in ends], axis=0), np.max([e[1] for e in ends], axis=0)
 	return low - 0.05 * (high - low), high + 0.05 * (high - low)
 
 

@@ -22,7 +22,10 @@ def read_options():
 		usage="%(prog)s [options]",
 		formatter_class=argparse.ArgumentDefaultsHelpFormatter,
 		allow_abbrev=False,
-		description="Crush, or pull apart, one sample of bonded spheres, and report.",
+		description=(
+			"Crush, pull apart, confine, split, bend or shear one sample of "
+			"bonded spheres, and report."
+		),
 		epilog=(
 			"SI units: m, s, Pa, kg/m³; only files of particles have a unit of their own. The defaults "
 			"are the parameters of ESyS-Particle's tutorial. The same options give the same result on one "

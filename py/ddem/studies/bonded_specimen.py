@@ -69,7 +69,7 @@ def waves(sample, run):
 	:param run: the finished :class:`runs.Run`
 	"""
 	density = sum(O.bodies[int(i)].state.mass for i in sample.ids) / sample.volume
-	young = run.strength.young if run.wording.modulus else 0
+	young = run.strength.young if run.wording.modulus == "young_GPa" else 0
 	return {
 		"sample_density_kg_m3": density,
 		"wave_speed_m_s": math.sqrt(young / density) if young > 0 else None,

@@ -41,10 +41,11 @@ class SphereSnapshot:
 	# traces in the plane of the picture of the broken bonds' sections, which moved with their spheres (k, 2, 2) [m]
 	cracks: np.ndarray
 	tension: np.ndarray  # whether the bond failed in tension (k,)
+	loads: tuple = ()  # lines (n, 2) that show in pictures what loads it [m]
 
 	@classmethod
-	def of(cls, sample, time):
-		return SphereMotion.of(sample, time).snapshot(sample.bond_records)
+	def of(cls, sample, time, loads=()):
+		return SphereMotion.of(sample, time, loads).snapshot(sample.bond_records)
 
 
 @dataclass(frozen=True)
@@ -57,11 +58,13 @@ class SphereMotion:
 	radii: np.ndarray  # (n,) [m]
 	rotation: np.ndarray  # about z (n,) [rad]
 	broken: int  # number of bonds
+	loads: tuple = ()  # see SphereSnapshot
 
 	@classmethod
-	def of(cls, sample, time):
+	def of(cls, sample, time, loads=()):
 		return cls(
-			time, sample.ids, sample.positions, sample.radii, sample.rotations[:, 2], sample.broken_count
+			time, sample.ids, sample.positions, sample.radii, sample.rotations[:, 2], sample.broken_count,
+			tuple(loads)
 		)
 
 	def snapshot(self, bonds):
@@ -80,7 +83,7 @@ class SphereMotion:
 		first, second = self.centres[rows].transpose(1, 0, 2)
 		return SphereSnapshot(
 			self.time, self.centres, self.radii, broken_share(bonds, gone, own), self.rotation,
-			crack_traces(first, second, broken["radius"]), broken["mode"] == TENSION
+			crack_traces(first, second, broken["radius"]), broken["mode"] == TENSION, self.loads
 		)
 
 

@@ -54,9 +54,11 @@ class Specimen:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
 
-	def look(self):
-		"""What of a snapshot of this moment must be kept now."""
-		return (TriangleSnapshot if self.deformable else SphereMotion).of(self.sample, O.time)
+	def look(self, loads=()):
+		"""What of a snapshot of this moment must be kept now; *loads*: lines that show them in pictures."""
+		if self.deformable:
+			return TriangleSnapshot.of(self.sample, O.time)
+		return SphereMotion.of(self.sample, O.time, loads)
 
 	def snapshots(self, looks):
 		"""The snapshots of what was kept, see :mod:`snapshots`."""
@@ -218,7 +220,7 @@ class CompressionTest:
 	def _look(self, files, snapshot=True):
 		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
 		if snapshot and (not self._looks or self._looks[-1].time < O.time):
-			self._looks.append(self.specimen.look())
+			self._looks.append(self.specimen.look(getattr(self.platens, "outlines", ())))
 		if files and self._filed != O.time:
 			self._filed = O.time
 			for recorder in self.recorders:

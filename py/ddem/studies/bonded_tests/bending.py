@@ -1,18 +1,18 @@
 # GPL v2 or later, see LICENSE.
 """Three-point bending of a beam of bonded spheres."""
 from argparse import SUPPRESS
+from dataclasses import replace
 
 from ... import bonded
 from ... import packing as packings
 from ..commandline import positive
-from ..uniaxial import CompressionTest
 from ..wording import Column, Wording
-from .kind import BondedTest
+from .kind import BondedTest, Fracture
 
 _SPAN = 0.8  # of the supports, of the beam's length
 
 
-class Bent(CompressionTest):
+class Bent(Fracture):
 	"""Records the bending of a beam."""
 
 	kind = "bending"
@@ -43,9 +43,9 @@ class Bent(CompressionTest):
 		definition=(
 			"Stress: 3<i>PL</i>/(2<i>bh</i>²), <i>P</i> the load, <i>L</i> the span, "
 			"<i>b</i> and <i>h</i> depth and height of the section (above the notch, where there is one); "
-			"strain: 6<i>δh</i>/<i>L</i>², <i>δ</i> the deflection of the neutral axis at mid-span "
-			"against that above the supports. The flexural modulus is the slope between 20 % and 60 % of "
-			"the strength, that of a beam without shear."
+			"strain: 6<i>δh</i>/<i>L</i>² with the whole height, <i>δ</i> the deflection of the neutral "
+			"axis at mid-span against that above the supports. The flexural modulus, of a beam without "
+			"a notch, is the slope between 20 % and 60 % of the strength, as if there were no shear."
 		),
 		also=(
 			Column("force_top", "N", "load [N]"),
@@ -54,6 +54,11 @@ class Bent(CompressionTest):
 		also_text="Load over the deflection of the neutral axis at mid-span against that above the supports.",
 		face="2 b h²/(3 L), so that a force over it is 3PL/(2bh²)",
 	)
+
+	def __init__(self, bending, *arguments, **more):
+		super().__init__(bending, *arguments, **more)
+		if bending.notch:  # whose slope is no modulus
+			self.wording = replace(self.wording, modulus=None, rows=self.wording.rows[:1])
 
 
 class ThreePointBending(BondedTest):
@@ -118,7 +123,7 @@ class ThreePointBending(BondedTest):
 
 	def duration(self, options, bending):
 		# twice the way of an elastic beam's middle: supports and load press into it as well
-		way = options.strain * bending.span**2 / (6 * bending.section[1])
+		way = options.strain * bending.span**2 / (6 * bending.height)
 		return 2 * way / options.velocity + 0.5 * options.ramp
 
 	def title(self):

@@ -4,14 +4,13 @@ from argparse import SUPPRESS
 
 from ... import bonded
 from ...shapes import Cylinder
-from ..uniaxial import CompressionTest
 from ..wording import Wording
-from .kind import BondedTest
+from .kind import BondedTest, Fracture
 
 _ENDS = ("curved", "flat", "flat-ends")
 
 
-class Split(CompressionTest):
+class Split(Fracture):
 	"""Records the splitting of a disc."""
 
 	kind = "brazilian"
@@ -19,7 +18,7 @@ class Split(CompressionTest):
 		strength="splitting_MPa",
 		peak="splitting strength",
 		rows=(("splitting_MPa", "splitting tensile strength", "MPa", 1, "{:.2f}"),),
-		stress="2P/(πDL)",
+		stress="stress 2P/(πDL)",
 		strain="shortening of the diameter",
 		modulus=None,
 		where="across the loaded diameter ",
@@ -101,15 +100,14 @@ class Brazilian(BondedTest):
 			(
 				"Brazilian. The stress is 2 P/(π D L), which a disc of diameter D and length L has "
 				"across its loaded diameter while it is elastic, so the strength is its tensile "
-				"strength where the disc splits from its middle. Where its bonds break beneath the "
-				"jaws first, it is a lower bound of nothing: look at the cracks."
+				"strength where the disc splits from its middle. Where bonds break beneath the jaws "
+				"first, it is not: look at the cracks."
 			)
 		]
 		if options.jaws == "flat-ends":
 			said.append(
-				"The flat ends bring the load in over 30°; the stress in the middle is then about "
-				"0.92 to 0.96 of that under line loads (Wang et al. 2004), which the figures here do "
-				"not take into account."
+				"The flat ends bring the load in over 30°; the tensile strength is then 0.96 of this "
+				"figure (Wang et al. 2004), which is not taken into account here."
 			)
 		return said
 

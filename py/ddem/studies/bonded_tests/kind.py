@@ -5,6 +5,16 @@ from ...shapes import flattened_disc
 from ..uniaxial import CompressionTest
 
 
+class Fracture(CompressionTest):
+	"""Ends when the stress has fallen once bonds have broken: spheres that first touch rattle, and the peaks of
+	that are none to fall from."""
+
+	def _record(self):
+		stop, self.stop = self.stop, self.stop if self.specimen.damage > 0 else 0
+		super()._record()
+		self.stop = stop
+
+
 class BondedTest:
 	"""A kind of test; this one: two elastic walls along y. A new kind overrides what differs.
 
@@ -15,7 +25,7 @@ class BondedTest:
 
 	name = None  #: of --test
 	about = None  #: for the help of --test
-	velocity = 0.125  #: of each wall, unless told otherwise [m/s]; see :attr:`strain`
+	velocity = 0.125  #: of each wall, unless told otherwise [m/s]
 	strain = 5e-3  #: largest one, unless told otherwise [-]
 	stop = 0.2  #: the test ends when the stress stays below this part of the peak, unless told otherwise; 0: never
 	shape = "prism"  #: of the sample, unless told otherwise

@@ -4,14 +4,13 @@ from argparse import SUPPRESS
 
 from ... import bonded
 from ..commandline import not_negative, positive
-from ..uniaxial import CompressionTest
 from ..wording import Column, Wording
-from .kind import BondedTest
+from .kind import BondedTest, Fracture
 
 _RESIDUAL = 0.2  # part of the record at its end over which the residual shear stress is the mean
 
 
-class Sheared(CompressionTest):
+class Sheared(Fracture):
 	"""Records the shear of a block."""
 
 	kind = "shear"
@@ -50,13 +49,6 @@ class Sheared(CompressionTest):
 		also_text="Normal stress and rise of the upper half over the shear displacement.",
 		face="plane of shear",
 	)
-
-
-	def _record(self):
-		# before the lower half moves there is no peak to fall from
-		stop, self.stop = self.stop, self.stop if self.platens.displacement > 0 else 0
-		super()._record()
-		self.stop = stop
 
 
 class DirectShearTest(BondedTest):
