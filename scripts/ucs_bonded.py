@@ -58,11 +58,10 @@ def main():
 		[vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", "rigid"))] if options.vtk else []
 	)
 	kind = TESTS[options.test]
-	shown = options.pictures or options.vtk
 	test = kind.record(
 		platens, kind.duration(options, platens), stop=options.stop, recorders=recorders, critical_dt=critical,
 		rows=options.rows,
-		snapshots=shown
+		snapshots=options.pictures
 	)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)

@@ -188,7 +188,7 @@ def crush(model, options):
 	recorders = [vtk.Recorder(platens.sample, os.path.join(options.out, "paraview", model))] if options.vtk else []
 	test = uniaxial.CompressionTest(
 		platens, duration, stop=options.stop, recorders=recorders, critical_dt=critical,
-		snapshots=options.pictures or options.vtk
+		snapshots=options.pictures
 	)
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)

@@ -37,7 +37,9 @@ from ._lazy import lazy
 _LAZY = {
 	"append": "block", "Block": "block", "time_step": "block", "Field": "field", "platens": "loading",
 	"Platens": "loading", "run": "loading", "servo": "loading", "ServoPlatens": "loading", "pressure": "edge_loads",
-	"absorb": "edge_loads",
+	"absorb": "edge_loads", "oedometer": "triangle_confinement", "biaxial": "triangle_confinement",
+	"simple_shear": "triangle_shear", "three_point_bending": "triangle_bending", "brazilian": "triangle_jaws",
+	"brazilian_disc": "triangle_jaws",
 	"initial_stress": None, "relax": "relaxation",
 	"out_of_balance": "relaxation",
 	"EnergyBalance": "energy", "StepMeter": "meter", "estimate": "accuracy.estimate",

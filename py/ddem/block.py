@@ -122,6 +122,7 @@ class Block:
 		self.node_ids = BodyIds(node_ids)  #: body ids of the nodes, see :class:`arrays.BodyIds`
 		self.triangle_ids = BodyIds(triangle_ids)  #: body ids of the triangles
 		self.thickness = thickness  #: [m]
+		self._found = {}  # rows in an engine's arrays, by what these were
 
 	@classmethod
 	def from_scene(cls, ids=None):
@@ -438,9 +439,13 @@ class Block:
 
 	def _rows(self, engine, kind):
 		"""Where the nodes or cores stand in the engine's arrays."""
-		if kind == "node":
-			return _rows(engine.values("nodeIds"), self.node_ids)
-		return _rows(engine.values("triangleIds"), self.triangle_ids)
+		name, own = ("nodeIds", self.node_ids) if kind == "node" else ("triangleIds", self.triangle_ids)
+		all_ids = engine.values(name)
+		before, rows = self._found.get(name, (None, None))
+		if before is None or not np.array_equal(before, all_ids):  # looking for them takes ten times as long
+			rows = _rows(all_ids, np.asarray(own))
+			self._found[name] = all_ids, rows
+		return rows
 
 	def _nodes(self):
 		return _bodies(self.node_ids, DeformableNode)

@@ -55,6 +55,16 @@ from .bonded_stress import mean_stress
 from .jacket import Jacket, jacket
 
 DEFAULT_GAP = packings.BOND_GAP  #: gap up to which spheres are bonded, of the largest radius
+#: what the column "mode" of :attr:`BondedSample.bond_records` says of a bond
+HOLDS, TENSION, SHEAR = 0, 1, 2
+#: a row of :attr:`BondedSample.bond_records`
+BOND = np.dtype(
+	[("id1", int), ("id2", int), ("mode", int)] + [
+		(name, float) for name in (
+			"time", "radius", "axial_force", "shear_force", "normal_stress", "shear_stress"
+		)
+	]
+)
 
 
 @meter.makes_particles
@@ -333,6 +343,42 @@ class BondedSample:
 		return np.column_stack([bonds[name] for name in columns])[self._mine(bonds["ids"])]
 
 	@property
+	def bond_records(self):
+		"""All bonds there have been, a structured array (:data:`BOND`): those that hold in the order of
+		:attr:`bonds`, then the broken ones in the order in which they broke.
+
+		================================  ==========================================================
+		id1, id2                          body ids, the smaller first among those that hold [-]
+		mode                              0 holds, 1 broken in tension, 2 broken in shear
+		time                              when it broke [s]; NaN while it holds
+		radius                            of its section [m]
+		axial_force, shear_force          now, tension positive, and size [N]; NaN where broken
+		normal_stress, shear_stress       now, tension positive, or when it broke [Pa]
+		================================  ==========================================================
+
+		::
+
+			bonds = sample.bond_records
+			held = bonds[bonds["mode"] == ddem.bonded.HOLDS]
+			print(held["axial_force"].max(), (bonds["mode"] == ddem.bonded.TENSION).sum())
+		"""
+		bonds, broken = law().bondArrays(), law().brokenArrays()
+		held = len(bonds["ids"])
+		records = np.empty(held + len(broken["id1"]), BOND)
+		now, lost = records[:held], records[held:]
+		now["id1"], now["id2"] = bonds["ids"].T
+		now["mode"], now["time"], now["radius"] = HOLDS, np.nan, bonds["radius"]
+		now["axial_force"], now["shear_force"] = bonds["axialForce"], bonds["shearForce"]
+		now["normal_stress"], now["shear_stress"] = bonds["normalStress"], bonds["shearStress"]
+		for name in ("id1", "id2", "mode", "time", "radius", "normal_stress", "shear_stress"):
+			lost[name] = broken[name]
+		lost["axial_force"] = lost["shear_force"] = np.nan
+		mine = self._mine(bonds["ids"]), self._mine(np.column_stack([broken["id1"], broken["id2"]]))
+		if all(part.all() for part in mine):
+			return fixed(records)
+		return fixed(records[np.concatenate(mine)])
+
+	@property
 	def broken(self):
 		"""Broken bonds in the order in which they broke, a structured array: id1, id2, step, time [s], position
 		and normal of the crack (3,) [m, -], radius [m], mode ("tension" or "shear"), normal_stress and
@@ -346,28 +392,45 @@ class BondedSample:
 		return fixed(records[self._mine(np.column_stack([records["id1"], records["id2"]]))])
 
 	@property
+	def broken_count(self):
+		"""Number of broken bonds."""
+		return law().brokenAmong(self._appended)
+
+	@property
 	def broken_fraction(self):
 		"""Broken bonds over those at the start [-]."""
-		return law().brokenAmong(self._appended) / max(self.initial_bonds, 1)
+		return self.broken_count / max(self.initial_bonds, 1)
 
 	def _mine(self, pairs):
 		"""Which pairs of body ids are both of this sample."""
 		mine = np.zeros(max(int(self._appended.max()), int(pairs.max(initial=-1))) + 1, bool)
 		mine[np.asarray(self._appended)] = True
-		return mine[np.asarray(pairs)].all(axis=1)
+		first, second = np.asarray(pairs).T
+		return mine[first] & mine[second]
 
 	@property
 	def damage(self):
 		"""Broken share of the bonds each sphere had at the start (n,) [-]; 0 for a sphere that had none."""
-		size, ids, broken = int(self._appended.max()) + 1, self.ids, self.broken
-		lost = np.bincount(np.concatenate([broken["id1"], broken["id2"]]), minlength=size)[ids]
-		held = np.bincount(self.bonds.ravel(), minlength=size)[ids]
-		return fixed(lost / np.maximum(lost + held, 1))
+		bonds = self.bond_records
+		return fixed(broken_share(bonds, bonds["mode"] != HOLDS, self.ids))
 
 	@property
 	def crack_area(self):
 		"""Cross-section of all broken bonds [m²]."""
 		return float(np.pi * (self.broken["radius"]**2).sum())
+
+
+def broken_share(bonds, broken, ids):
+	"""Broken share of the bonds each sphere had at the start (n,) [-]; 0 for a sphere that had none.
+
+	:param bonds: as :attr:`BondedSample.bond_records`
+	:param broken: which of them are broken (m,)
+	:param ids: of the spheres (n,)
+	"""
+	first, second, ids = bonds["id1"], bonds["id2"], np.asarray(ids, int)
+	size = max(int(part.max(initial=-1)) for part in (first, second, ids)) + 1
+	ends = lambda some: np.bincount(first[some], minlength=size) + np.bincount(second[some], minlength=size)
+	return ends(broken)[ids] / np.maximum(ends(slice(None))[ids], 1)
 
 
 def engines(platens=None, viscosity=0.0, rotational_viscosity=None, convention="consistent"):

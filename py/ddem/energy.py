@@ -30,31 +30,33 @@ class EnergyBalance:
 		#: total [J] that the book must keep; None until it is known
 		self.start = O.energy.total() if begun else 0.0 if O.iter == 0 and _at_rest() else None
 		self._drift = self._through = 0.0  # largest at any record [J]
+		self.recorded_drift = 0.0  #: what the book had too much at the last :meth:`record` [J]
 		O.trackEnergy = True
 
 	def parts(self):
 		"""All entries [J] by name, the kinetic energy at the present time."""
 		entries = dict(O.energy.items())
-		behind = any(isinstance(e, NewtonIntegrator) and not getattr(e, "moved", 0) for e in O.engines)
-		triangles = any(isinstance(e, DeformableEngine) for e in O.engines)
-		if "kinetic" in entries and behind and not triangles:
+		if "kinetic" in entries and _books_half_a_step_ago(O.engines):
 			entries["kinetic"] = 0.5 * (entries["kinetic"] + utils.kineticEnergy())
 		return entries
 
 	@property
 	def drift(self):
 		"""What the book has too much now [J]; 0 before anything happened."""
+		return self._drift_of(self.parts())
+
+	def _drift_of(self, parts):
 		if self.start is None:
 			if O.iter == self._born:
 				return 0.0
-			self.start = sum(self.parts().values())
-		return sum(self.parts().values()) - self.start
+			self.start = sum(parts.values())
+		return sum(parts.values()) - self.start
 
 	@property
 	def error(self):
 		"""How far the total has moved, and what stores and losses have below zero, over the energy that has
 		gone through the system [-]; 0 before anything happened."""
-		drift, through = self._now()
+		drift, through = self._errors(self.parts())
 		return drift / through if through > 0 else 0.0
 
 	@property
@@ -64,19 +66,32 @@ class EnergyBalance:
 		return self._drift / self._through if self._through > 0 else 0.0
 
 	def record(self):
-		"""The parts now, and keep the largest error."""
-		drift, through = self._now()
+		"""The parts now; keeps the largest error, and :attr:`recorded_drift`."""
+		parts = self.parts()
+		drift, through = self._errors(parts)
 		self._drift, self._through = max(self._drift, drift), max(self._through, through)
-		return self.parts()
+		self.recorded_drift = self._drift_of(parts)
+		return parts
 
-	def _now(self):
-		drift, parts = self.drift, self.parts()
+	def _errors(self, parts):
+		drift = self._drift_of(parts)
 		through = max(
 			sum(abs(parts.get(name, 0)) for name in EXTERNAL),
 			sum(value for name, value in parts.items() if name not in EXTERNAL),
 		)
 		borrowed = -sum(min(0.0, parts.get(name, 0.0)) for name in NEVER_NEGATIVE)
 		return abs(drift) + borrowed, through
+
+
+def _books_half_a_step_ago(engines):
+	"""Whether the kinetic energy is booked by a NewtonIntegrator before it moves the bodies; DeformableEngine and
+	BondedNewtonIntegrator book that of the present positions."""
+	behind = False
+	for engine in engines:
+		if isinstance(engine, DeformableEngine):
+			return False
+		behind = behind or isinstance(engine, NewtonIntegrator) and not getattr(engine, "moved", 0)
+	return behind
 
 
 def _at_rest():

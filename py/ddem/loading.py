@@ -140,7 +140,7 @@ class Platens:
 
 	@property
 	def strain(self):
-		"""Shortening of the sample over its :attr:`height` [-], compression positive: of the distance between
+		"""Shortening of the sample over its ``height`` [-], compression positive: of the distance between
 		the means of both ends.
 		"""
 		moved = self.sample.displacements

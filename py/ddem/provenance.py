@@ -41,6 +41,10 @@ class _Run:
 		self.parameters, self.seed = parameters, seed
 		self.files, self.seeds = {}, []  # files as a dict: in order, once each
 
+	@functools.cached_property
+	def parameters_sha256(self):
+		return _sha256(_text(self.parameters).encode())
+
 
 _run = _Run()
 
@@ -84,7 +88,8 @@ def record(inputs=(), seed=None):
 	"""
 	seed = seed if seed is not None else _run.seed if _run.seed is not None else _several(_run.seeds)
 	seed = _plain(seed)
-	parameters = _sha256(_text(sys.argv[1:] if _run.parameters is None else _run.parameters).encode())
+	given = _run.parameters is not None
+	parameters = _run.parameters_sha256 if given else _sha256(_text(sys.argv[1:]).encode())
 	paths = dict.fromkeys([*_script(), *_run.files, *map(os.path.abspath, inputs)])
 	files = [{"file": _shown(path), "sha256": _file_sha256(path)} for path in paths]
 	inputs = [parameters, seed, sorted([os.path.basename(one["file"]), one["sha256"]] for one in files)]
@@ -104,9 +109,9 @@ def record(inputs=(), seed=None):
 # ---- files ----
 
 
-def text():
-	"""The record in one line of ASCII."""
-	return json.dumps(record())
+def text(found=None):
+	"""The record, or one that is there already, in one line of ASCII."""
+	return json.dumps(found or record())
 
 
 def write_json(path, data, **options):
@@ -275,6 +280,7 @@ def machine():
 	return {"system": platform.platform(), "processor": processor(), "cores": os.cpu_count()}
 
 
+@functools.lru_cache(maxsize=None)
 def processor():
 	"""Name of the processor."""
 	try:

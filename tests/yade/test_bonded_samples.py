@@ -7,7 +7,7 @@ import pytest
 
 from yade import BondedMat, O, pack
 from yade.ddem import bonded, packing, vtk
-from yade.ddem.studies.snapshots import SphereSnapshot
+from yade.ddem.studies.snapshots import SphereMotion, SphereSnapshot
 
 
 def specimen():
@@ -40,6 +40,42 @@ def test_a_sphere_is_erased_and_all_goes_on(tmp_path):
 	vtk.Recorder(sample, str(tmp_path / "erased"))()
 	assert SphereSnapshot.of(sample, O.time).centres.shape == (before - 1, 3)
 	assert sample.degrees_of_freedom == 6 * (before - 1)
+
+
+def test_bond_records_are_the_bonds_that_hold_and_the_broken_ones():
+	"""Column by column what the other arrays say, in another sample's presence too."""
+	sample, _ = specimen()
+	other = bonded.append(packing.Packing([[0.1, 0, 0], [0.102, 0, 0]], [0.001, 0.001]), "rock")
+	O.run(900, True)
+	records, held, broken = sample.bond_records, len(sample.bonds), sample.broken
+	assert len(broken) > 20 and len(records) == held + len(broken) == sample.initial_bonds
+	now, lost = records[:held], records[held:]
+	assert (now["mode"] == bonded.HOLDS).all() and np.isnan(now["time"]).all()
+	assert (np.column_stack([now["id1"], now["id2"]]) == sample.bonds).all()
+	assert (np.column_stack([now["normal_stress"], now["shear_stress"]]) == sample.bond_stresses).all()
+	assert (np.column_stack([now["axial_force"], now["shear_force"]]) == sample.bond_forces).all()
+	assert (now["radius"] == sample.bond_radii).all()
+	for name in ("id1", "id2", "time", "radius", "normal_stress", "shear_stress"):
+		assert (lost[name] == broken[name]).all()
+	assert ((lost["mode"] == bonded.TENSION) == (broken["mode"] == "tension")).all()
+	assert (lost["mode"] != bonded.HOLDS).all() and np.isnan(lost["axial_force"]).all()
+	assert len(other.bond_records) == 1 and not sample.bond_records.flags.writeable
+
+
+def test_what_is_kept_of_an_instant_gives_its_snapshot_at_any_later_time():
+	"""Which bonds had broken by then, the records of broken bonds say."""
+	sample, _ = specimen()
+	kept, whole = [], []
+	for _ in range(3):
+		O.run(300, True)
+		kept.append(SphereMotion.of(sample, O.time))
+		whole.append(SphereSnapshot.of(sample, O.time))
+	assert 0 < len(whole[1].cracks) < len(whole[2].cracks)
+	for one, then in zip(kept, whole):
+		made = one.snapshot(sample.bond_records)
+		for name in ("time", "centres", "radii", "damage", "rotation", "cracks", "tension"):
+			assert np.array_equal(getattr(made, name), getattr(then, name)), name
+	assert (whole[-1].damage == sample.damage).all()
 
 
 def test_a_specimen_in_pieces_is_told():

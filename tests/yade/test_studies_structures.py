@@ -242,9 +242,9 @@ def test_script_writes_what_it_promises(name, monkeypatch, tmp_path, capsys):
 			points, cells, kind, point, cell, time, _ = read(files[-1][1])
 			assert kind == VTK_TRIANGLE and len(cells) > 20 and time == files[-1][0] > 0
 			assert (
-				np.abs(point["displacement"]).max() > 0
-				and np.isfinite(cell["stress"]).all()
-				and np.abs(cell["stress"]).max() > 1e3
+				np.abs(point["displacement [m]"]).max() > 0
+				and np.isfinite(cell["stress [Pa]"]).all()
+				and np.abs(cell["stress [Pa]"]).max() > 1e3
 			)
 		if file.endswith(".csv"):
 			assert len(Series.read(tmp_path / "new" / file)) > 10

@@ -259,13 +259,13 @@ def test_paraview_files(small):
 		last[part] = reader.GetOutput()
 	assert last["spheres"].GetNumberOfPoints() == figures["particles"]
 	assert last["bonds"].GetNumberOfCells() == figures["bonds"]
-	state = vtk_to_numpy(last["bonds"].GetCellData().GetArray("state"))
+	state = vtk_to_numpy(last["bonds"].GetCellData().GetArray("state (0 holds, 1 tension, 2 shear)"))
 	assert [(state == mode).sum() for mode in (TENSION, SHEAR)] == [
 		figures["broken_in_tension"],
 		figures["broken_in_shear"],
 	]
 	broken = broken_bonds.read(folder / "rigid_broken_bonds.csv")
-	stress = vtk_to_numpy(last["broken"].GetPointData().GetArray("normalStress"))
+	stress = vtk_to_numpy(last["broken"].GetPointData().GetArray("normal stress [Pa]"))
 	np.testing.assert_array_equal(stress, broken["normal_stress"])
 
 

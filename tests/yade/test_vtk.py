@@ -1,6 +1,8 @@
 # GPL v2 or later, see LICENSE.
 """ParaView files: what VTK reads back is the scene."""
+import glob
 import os
+import shutil
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -12,6 +14,8 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade import BondedMat, ConcreteDamageMat, DeformableElastMat, DeformableEngine, ForceResetter, O, PyRunner, ddem
 from yade.ddem import bonded, packing, vtk
+
+STATE, DAMAGE = "state (0 holds, 1 tension, 2 shear)", "damage (broken share of its bonds)"
 
 
 def read(path):
@@ -72,21 +76,23 @@ def test_triangles_are_those_of_the_scene(block, tmp_path):
 	np.testing.assert_allclose(points[:, :2], block.positions, rtol=1e-15)
 	assert (points[:, 2] == 0).all()
 	np.testing.assert_array_equal(cells, block.mesh.triangles)
-	np.testing.assert_array_equal(point["displacement"][:, :2], block.displacements)
-	np.testing.assert_array_equal(point["velocity"][:, :2], block.velocities)
-	assert np.abs(point["velocity"]).max() >= 20
+	np.testing.assert_array_equal(point["displacement [m]"][:, :2], block.displacements)
+	np.testing.assert_array_equal(point["velocity [m/s]"][:, :2], block.velocities)
+	assert np.abs(point["velocity [m/s]"]).max() >= 20
 	np.testing.assert_allclose(cell["damage"], block.damage, rtol=1e-14)
 	assert block.damage.max() > 0.01
-	np.testing.assert_array_equal(cell["rotation"], block.rotation)
+	np.testing.assert_array_equal(cell["rotation [rad]"], block.rotation)
 	assert np.abs(block.rotation).max() > 0
 	np.testing.assert_array_equal(cell["region"], block.mesh.regions)
 	np.testing.assert_array_equal(cell["id"], block.triangle_ids)
 
-	stress = grid.GetCellData().GetArray("stress")
+	stress = grid.GetCellData().GetArray("stress [Pa]")
 	assert [stress.GetComponentName(i) for i in range(6)] == ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]
 	body = O.bodies[int(block.triangle_ids[7])]
 	mean = sum(np.array(tensor) for tensor in body.shape.stress) / 3
-	assert cell["stress"][7] == pytest.approx([mean[0, 0], mean[1, 1], mean[2, 2], mean[0, 1], 0, 0], rel=1e-12)
+	assert cell["stress [Pa]"][7] == pytest.approx(
+		[mean[0, 0], mean[1, 1], mean[2, 2], mean[0, 1], 0, 0], rel=1e-12
+	)
 	assert abs(mean[0, 1]) > 1e3
 	strain = sum(np.array(tensor) for tensor in body.shape.strain) / 3
 	assert cell["strain"][7] == pytest.approx(
@@ -94,8 +100,8 @@ def test_triangles_are_those_of_the_scene(block, tmp_path):
 	)
 
 	undamaged = read(entries[0][1])
-	assert np.abs(undamaged[4]["stress"]).max() < 1  # Pa: round-off of 30 GPa
-	assert np.abs(undamaged[3]["displacement"]).max() == 0
+	assert np.abs(undamaged[4]["stress [Pa]"]).max() < 1  # Pa: round-off of 30 GPa
+	assert np.abs(undamaged[3]["displacement [m]"]).max() == 0
 
 
 def test_sub_elements_have_their_own_cells(block, tmp_path):
@@ -106,7 +112,7 @@ def test_sub_elements_have_their_own_cells(block, tmp_path):
 	count = len(block.triangle_ids)
 	assert (kind, len(cells)) == (VTK_TRIANGLE, 3 * count)
 	np.testing.assert_array_equal(cell["damage"], block.sub_element_damage.ravel())
-	np.testing.assert_array_equal(cell["stress"][:, :4], block.stress.reshape(-1, 4))
+	np.testing.assert_array_equal(cell["stress [Pa]"][:, :4], block.stress.reshape(-1, 4))
 	# each cell: the core of its triangle, then two of its nodes, counter-clockwise
 	for row in (0, 4, 3 * count - 1):
 		core = np.array(O.bodies[int(block.triangle_ids[row // 3])].state.pos)
@@ -115,17 +121,19 @@ def test_sub_elements_have_their_own_cells(block, tmp_path):
 		a, b, c = points[cells[row], :2]
 		assert np.cross([*(b - a), 0], [*(c - a), 0])[2] > 0
 	np.testing.assert_allclose(
-		points[:, :2] - point["displacement"][:, :2],
+		points[:, :2] - point["displacement [m]"][:, :2],
 		np.vstack([block.reference_positions, block.mesh.centroids]),
 		atol=1e-15,
 	)
 
 
 def test_recorder_in_a_run_replaces_an_older_recording(block, tmp_path):
-	for name in (
-		"block-0000.vtu", "block-0007.vtu", "block-12345.vtu", "block.pvd", "block-notes.vtu", "other-0001.vtu"
-	):
-		(tmp_path / name).write_text("old")
+	older = vtk.Recorder(block, str(tmp_path / "block"))
+	older()
+	for name in ("block-0007.vtu", "block-12345.vtu"):
+		shutil.copy(tmp_path / "block-0000.vtu", tmp_path / name)
+	for name in ("block-notes.vtu", "other-0001.vtu"):
+		(tmp_path / name).write_text("mine")
 	import __main__
 	__main__.record = vtk.Recorder(block, str(tmp_path / "block"))
 	O.engines = O.engines + [PyRunner(command="record()", iterPeriod=10)]
@@ -136,6 +144,19 @@ def test_recorder_in_a_run_replaces_an_older_recording(block, tmp_path):
 	times = [time for time, _ in collection(tmp_path / "block.pvd")]
 	assert times == pytest.approx([10 * O.dt, 20 * O.dt, 30 * O.dt])
 	del __main__.record
+
+
+@pytest.mark.parametrize("foreign", ["row-bonds-0003.vtu", "row-broken.pvd"])
+@pytest.mark.parametrize("steps_before", [0, 5])
+def test_files_that_no_recorder_has_written_are_refused_and_stay(spheres, tmp_path, foreign, steps_before):
+	vtk.Recorder(spheres, str(tmp_path / "row"))()
+	content = '<VTKFile type="Collection"><Collection /></VTKFile>'
+	(tmp_path / foreign).write_text(content)
+	before = sorted(os.listdir(tmp_path))
+	steps(steps_before)
+	with pytest.raises(FileExistsError, match=foreign):
+		vtk.Recorder(spheres, str(tmp_path / "row"))
+	assert sorted(os.listdir(tmp_path)) == before and (tmp_path / foreign).read_text() == content
 
 
 def test_a_recording_goes_on_in_a_scene_that_was_loaded(block, tmp_path):
@@ -153,7 +174,8 @@ def test_a_recording_goes_on_in_a_scene_that_was_loaded(block, tmp_path):
 	assert len(given_up) == 6
 	O.reset()
 	O.load(str(tmp_path / "middle.yade.gz"))
-	record = vtk.Recorder(ddem.Block.from_scene(), name)
+	with pytest.warns(UserWarning, match="later files, 2 of them, are removed"):
+		record = vtk.Recorder(ddem.Block.from_scene(), name)
 	O.run(5, True)
 	record()
 	found = collection(name + ".pvd")
@@ -163,6 +185,45 @@ def test_a_recording_goes_on_in_a_scene_that_was_loaded(block, tmp_path):
 		*(f"block-000{k}.vtu" for k in range(5)), "block-notes.vtu", "block.pvd"
 	]
 	assert read(found[4][1])[5] == O.time
+
+
+def test_a_recorder_that_was_there_goes_on_when_its_scene_is_loaded(spheres, tmp_path):
+	"""The same object, as a PyRunner calls it; an instant is in the series once."""
+	record = vtk.Recorder(spheres, str(tmp_path / "row"))
+	for k in range(4):
+		record()
+		O.save(str(tmp_path / f"{k}.yade.gz"))
+		steps(3)
+	record()
+	assert len(collection(record.files[0])) == 5
+	O.load(str(tmp_path / "2.yade.gz"))
+	with pytest.warns(UserWarning, match="2 of them"):
+		record()
+	record()
+	steps(1)
+	record()
+	for path in record.files:
+		assert [time for time, _ in collection(path)] == pytest.approx([0, 3 * O.dt, 6 * O.dt, 7 * O.dt])
+		assert [file[-8:] for _, file in collection(path)] == [f"{k:04d}.vtu" for k in range(4)]
+		assert len(glob.glob(path[:-4] + "-*.vtu")) == 4
+		assert all(read(file)[5] == time for time, file in collection(path))
+
+
+def test_a_file_that_was_written_last_and_is_not_listed_is_part_of_the_recording(spheres, tmp_path):
+	"""A process may end between a file and the list."""
+	record = vtk.Recorder(spheres, str(tmp_path / "row"))
+	record()
+	steps(3)
+	record()
+	for path in record.files:
+		with open(path) as file:
+			lines = [line for line in file if "0001.vtu" not in line]
+		with open(path, "w") as file:
+			file.writelines(lines)
+	steps(3)
+	vtk.Recorder(spheres, str(tmp_path / "row"))()
+	for path in record.files:
+		assert [time for time, _ in collection(path)] == pytest.approx([0, 3 * O.dt, 6 * O.dt])
 
 
 def test_grid_refuses_arrays_that_do_not_fit():
@@ -209,38 +270,40 @@ def test_spheres_bonds_and_broken_bonds(spheres, tmp_path):
 	points, cells, kind, point, _, time, _ = read(tmp_path / "row-spheres-0001.vtu")
 	assert (kind, len(cells), time) == (VTK_VERTEX, 10, O.time)
 	np.testing.assert_array_equal(points, spheres.positions)
-	np.testing.assert_array_equal(point["radius"], spheres.radii)
-	np.testing.assert_array_equal(point["velocity"], spheres.velocities)
-	np.testing.assert_array_equal(point["displacement"], spheres.displacements)
-	np.testing.assert_array_equal(point["damage"], spheres.damage)
-	assert point["damage"].max() == 0.5
-	assert point["rotation"][0].tolist() == list(O.bodies[int(spheres.ids[0])].state.rot())
-	assert point["rotation"][0, 2] > 1e-5
+	np.testing.assert_array_equal(point["radius [m]"], spheres.radii)
+	np.testing.assert_array_equal(point["velocity [m/s]"], spheres.velocities)
+	np.testing.assert_array_equal(point["displacement [m]"], spheres.displacements)
+	np.testing.assert_array_equal(point[DAMAGE], spheres.damage)
+	assert point[DAMAGE].max() == 0.5
+	assert point["rotation [rad]"][0].tolist() == list(O.bodies[int(spheres.ids[0])].state.rot())
+	assert point["rotation [rad]"][0, 2] > 1e-5
 
 	points, cells, kind, _, bond, _, _ = read(tmp_path / "row-bonds-0001.vtu")
 	assert (kind, len(cells)) == (VTK_LINE, 9)
 	np.testing.assert_array_equal(points, spheres.positions)
-	assert bond["state"].tolist() == [vtk.HOLDS] * 8 + [vtk.TENSION]
+	assert bond[STATE].tolist() == [bonded.HOLDS] * 8 + [bonded.TENSION]
 	assert cells[-1].tolist() == [4, 5] and [4, 5] not in cells[:-1].tolist()
-	assert bond["radius"] == pytest.approx(1e-3)
+	assert bond["radius [m]"] == pytest.approx(1e-3)
 	for row, (i, j) in enumerate(cells[:-1]):
 		phys = O.interactions[int(spheres.ids[i]), int(spheres.ids[j])].phys
 		along = (spheres.positions[j] - spheres.positions[i]) / np.linalg.norm(
 			spheres.positions[j] - spheres.positions[i]
 		)
-		assert bond["axialForce"][row] == pytest.approx(-np.dot(phys.normalForce, along), rel=1e-12)
-		assert bond["shearForce"][row] == pytest.approx(phys.shearForce.norm())
-		assert bond["normalStress"][row] == phys.normalStress
+		assert bond["axial force [N]"][row] == pytest.approx(-np.dot(phys.normalForce, along), rel=1e-12)
+		assert bond["shear force [N]"][row] == pytest.approx(phys.shearForce.norm())
+		assert bond["normal stress [Pa]"][row] == phys.normalStress
 	# tension is positive: the spheres in the middle are held back by their neighbours
-	assert bond["axialForce"][3] > 0 and bond["axialForce"][4] > 0
-	assert np.isnan(bond["axialForce"][-1])
-	assert bond["normalStress"][-1] == broken["normal_stress"][0] > 10e6
+	assert bond["axial force [N]"][3] > 0 and bond["axial force [N]"][4] > 0
+	assert np.isnan(bond["axial force [N]"][-1])
+	when = bond["time of breaking [s]"]
+	assert np.isnan(when[:-1]).all() and when[-1] == broken["time"][0]
+	assert bond["normal stress [Pa]"][-1] == broken["normal_stress"][0] > 10e6
 
 	points, cells, kind, point, _, _, _ = read(tmp_path / "row-broken-0001.vtu")
 	assert (kind, len(cells)) == (VTK_VERTEX, 1)
 	np.testing.assert_array_equal(points, broken["position"])
-	assert point["time"].tolist() == broken["time"].tolist()
-	assert point["mode"].tolist() == [vtk.TENSION]
+	assert point["time [s]"].tolist() == broken["time"].tolist()
+	assert point["mode (1 tension, 2 shear)"].tolist() == [bonded.TENSION]
 	assert np.abs(point["normal"][0]) == pytest.approx([1, 0, 0], abs=1e-3)
 
 	points, cells, *_ = read(tmp_path / "row-broken-0000.vtu")

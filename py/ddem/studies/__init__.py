@@ -12,6 +12,7 @@
                                answered in a YADE of its own (:mod:`yade_process`)
 :mod:`bonded_tests`            kinds of tests of bonded spheres; :mod:`bonded_options`, :mod:`bonded_specimen`:
                                their options and samples
+:mod:`deformable_tests`        the same of deformable triangles; :mod:`deformable_options`, :mod:`deformable_laws`
 :mod:`bonded_study`            the study of bonded spheres
 :mod:`esys`                    ESyS-Particle as a peer
 :mod:`structures`              beam, bar and blocks
@@ -22,7 +23,7 @@ from .._lazy import lazy
 
 _MODULES = (
 	"bonded_options", "bonded_specimen", "bonded_study", "bonded_tests", "calibration", "calibration_quantities",
-	"campaign", "commandline", "esys", "evaluations",
+	"campaign", "commandline", "deformable_laws", "deformable_options", "deformable_tests", "esys", "evaluations",
 	"interrupts", "measures", "questions", "runs", "snapshots", "structures", "uniaxial", "virtualtest", "wording",
 	"workers", "yade_process"
 )

@@ -45,14 +45,45 @@ class SphereSnapshot:
 
 	@classmethod
 	def of(cls, sample, time, loads=()):
-		centres, broken = sample.positions, sample.broken
-		rows = sample.rows(np.column_stack([broken["id1"], broken["id2"]]))
+		return SphereMotion.of(sample, time, loads).snapshot(sample.bond_records)
+
+
+@dataclass(frozen=True)
+class SphereMotion:
+	"""Where bonded spheres are at an instant: what of a :class:`SphereSnapshot` must be kept then, as the records
+	of bonds, in the order in which they broke, say at any later time which were the first."""
+	time: float  # [s]
+	ids: np.ndarray  # of the bodies (n,)
+	centres: np.ndarray  # (n, 3) [m]
+	radii: np.ndarray  # (n,) [m]
+	rotation: np.ndarray  # about z (n,) [rad]
+	broken: int  # number of bonds
+	loads: tuple = ()  # see SphereSnapshot
+
+	@classmethod
+	def of(cls, sample, time, loads=()):
+		return cls(
+			time, sample.ids, sample.positions, sample.radii, sample.rotations[:, 2], sample.broken_count,
+			tuple(loads)
+		)
+
+	def snapshot(self, bonds):
+		"""The :class:`SphereSnapshot`, by records of bonds (:attr:`bonded.BondedSample.bond_records`) of this
+		instant or of a later one."""
+		from ..bonded import HOLDS, TENSION, broken_share
+		gone = np.zeros(len(bonds), bool)
+		gone[np.flatnonzero(bonds["mode"] != HOLDS)[:self.broken]] = True
+		broken = bonds[gone]
+		row = np.full(max(int(bonds[name].max(initial=-1)) for name in ("id1", "id2")) + 1, -1)
+		own = np.asarray(self.ids)
+		row[own[own < len(row)]] = np.flatnonzero(own < len(row))
+		rows = np.column_stack([row[broken["id1"]], row[broken["id2"]]])
 		there = (rows >= 0).all(axis=1)  # not of a sphere that was erased
 		broken, rows = broken[there], rows[there]
-		first, second = centres[rows].transpose(1, 0, 2)
-		return cls(
-			time, centres, sample.radii, sample.damage, sample.rotations[:, 2],
-			crack_traces(first, second, broken["radius"]), broken["mode"] == "tension", tuple(loads)
+		first, second = self.centres[rows].transpose(1, 0, 2)
+		return SphereSnapshot(
+			self.time, self.centres, self.radii, broken_share(bonds, gone, own), self.rotation,
+			crack_traces(first, second, broken["radius"]), broken["mode"] == TENSION, self.loads
 		)
 
 

@@ -6,7 +6,7 @@ import time
 import numpy as np
 from tqdm import tqdm
 
-from yade import ConcreteDamageMat, O, PyRunner, timing
+from yade import O, PyRunner, timing
 
 from .. import loading, meter
 from ..block import Block
@@ -14,7 +14,7 @@ from ..effect_table import effects
 from ..energy import EnergyBalance
 from ..series import Series
 from .runs import RECORDER, Run
-from .snapshots import SphereSnapshot, TriangleSnapshot
+from .snapshots import SphereMotion, TriangleSnapshot
 from .wording import COMPRESSION, TENSION
 
 ROWS = 1000  #: records up to the largest strain, unless told otherwise
@@ -43,25 +43,29 @@ class Specimen:
 		"""Called once the engines are set."""
 		self.degrees_of_freedom = int(self.sample.degrees_of_freedom)
 		if self.deformable:
-			breakable = [
-				isinstance(O.bodies[int(i)].mat, ConcreteDamageMat) for i in self.sample.triangle_ids
-			]
-			self._weights = self.sample.area * breakable
-			if not any(breakable):
-				raise ValueError("no triangle of this block can break: none has a ConcreteDamageMat")
+			breaks = [hasattr(O.bodies[i].mat, "fractureEnergy") for i in self.sample.triangle_ids]
+			self._weights = self.sample.area * (breaks if any(breaks) else 1)
 
 	@property
 	def damage(self):
-		"""Damage of the whole sample, 0 to 1: mean η/η_max of the concrete by area,
-		or the broken share of the bonds."""
+		"""Damage of the whole sample, 0 to 1: mean of what can break by area (of concrete η/η_max; 0 where
+		nothing can), or the broken share of the bonds."""
 		if self.deformable:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
 
-	def snapshot(self, loads=()):
+	def look(self, loads=()):
+		"""What of a snapshot of this moment must be kept now; *loads*: lines that show them in pictures."""
 		if self.deformable:
 			return TriangleSnapshot.of(self.sample, O.time)
-		return SphereSnapshot.of(self.sample, O.time, loads)
+		return SphereMotion.of(self.sample, O.time, loads)
+
+	def snapshots(self, looks):
+		"""The snapshots of what was kept, see :mod:`snapshots`."""
+		if self.deformable:
+			return looks
+		bonds = self.sample.bond_records
+		return [one.snapshot(bonds) for one in looks]
 
 	def figures(self):
 		"""Further figures for the summary."""
@@ -125,7 +129,8 @@ class CompressionTest:
 		if rows < SNAPSHOTS:
 			raise ValueError(f"rows = {rows} must be at least {SNAPSHOTS}")
 		self.specimen, self.longest = Specimen(platens.sample), rows
-		self.rows, self.snapshots, self._peak, self._between = [], [], 0.0, snapshots
+		self.rows, self._looks, self._between = [], [], snapshots
+		self._peak, self._low = 0.0, 0
 		self.stopped = self._filed = self.book = None
 		self._booked = book
 
@@ -195,13 +200,14 @@ class CompressionTest:
 			**{column.name: getattr(self.platens, column.name) for column in self.wording.also},
 		}
 		if self.book:
-			row["energy_drift"] = self.book.drift
+			row["energy_drift"] = self.book.recorded_drift
 		self.rows.append({**row, **{f"energy_{name}": value for name, value in energies.items()}})
-		if self._between and len(self.rows) % (self.longest // SNAPSHOTS) == 0:
-			self._look(files=len(self.rows) % (self.longest // FILES) == 0)
-		stress = np.array([r["stress"] for r in self.rows[-self._held:]])
+		due = [len(self.rows) % (self.longest // times) == 0 for times in (FILES, SNAPSHOTS)]
+		if any(due):
+			self._look(files=due[0], snapshot=due[1] and self._between)
 		self._peak = max(self._peak, row["stress"])
-		if self.stop and len(self.rows) > self._held and (stress < self.stop * self._peak).all():
+		self._low = self._low + 1 if row["stress"] < self.stop * self._peak else 0  # records in a row
+		if self.stop and len(self.rows) > self._held and self._low >= self._held:
 			self.stopped = f"stress stayed below {100 * self.stop:g} % of the peak"
 			O.pause()
 		done = O.iter - self._first
@@ -211,10 +217,10 @@ class CompressionTest:
 			f"strain {100 * row['strain']:.2f} %, stress {row['stress'] / 1e6:.0f} MPa", refresh=False
 		)
 
-	def _look(self, files):
+	def _look(self, files, snapshot=True):
 		"""Keep a snapshot of this moment, and let the recorders write theirs; each once a moment."""
-		if not self.snapshots or self.snapshots[-1].time < O.time:
-			self.snapshots.append(self.specimen.snapshot(getattr(self.platens, "outlines", ())))
+		if snapshot and (not self._looks or self._looks[-1].time < O.time):
+			self._looks.append(self.specimen.look(getattr(self.platens, "outlines", ())))
 		if files and self._filed != O.time:
 			self._filed = O.time
 			for recorder in self.recorders:
@@ -236,7 +242,7 @@ class CompressionTest:
 			particles=specimen.particles,
 			degrees_of_freedom=specimen.degrees_of_freedom, dt=self._dt, critical_dt=self.critical_dt,
 			steps=O.iter - self._first, wall=wall, busy=busy, recorded=recorded,
-			threads=O.numThreads, series=series, snapshots=self.snapshots,
+			threads=O.numThreads, series=series, snapshots=specimen.snapshots(self._looks),
 			engines=[(e.label or type(e).__name__, 1e-9 * e.execTime, e.execCount) for e in O.engines],
 			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
 			extra=specimen.figures(),

@@ -1,0 +1,126 @@
+# GPL v2 or later, see LICENSE.
+"""Materials of deformable triangles as scripts make them from options: a law is an entry of :data:`LAWS`."""
+from argparse import SUPPRESS
+from dataclasses import dataclass
+
+from yade import ConcreteDamageMat, DeformableElastMat, O, ScalarDamageMat, VonMisesMat
+
+from .commandline import not_negative, positive
+
+
+@dataclass(frozen=True)
+class Parameter:
+	"""An option of a law; its default is that of the material."""
+	attribute: str  # of the material
+	unit: str  # "Pa"; as metavar
+	kind: object  # what argparse calls with the text
+	help: str
+
+	@property
+	def option(self):
+		"""Its name on the command line, without dashes in front."""
+		return "".join("-" + c.lower() if c.isupper() else c for c in self.attribute)
+
+
+@dataclass(frozen=True)
+class Law:
+	"""A law that --law names."""
+	material: type
+	about: str
+	parameters: tuple = ()  # of :class:`Parameter`
+
+
+#: name -> :class:`Law`
+LAWS = {
+	"concrete": Law(
+		ConcreteDamageMat, "viscoplastic flow and damage of concrete (Zubelewicz 2018)", (
+			Parameter("strength", "PA", positive, "strength of the undamaged material in the flow rule"),
+			Parameter(
+				"fractureEnergy",
+				"J/M3",
+				positive,
+				"mean fracture energy; scalar-damage: per area of crack [J/m²], 100",
+			),
+		)
+	),
+	"scalar-damage": Law(
+		ScalarDamageMat, "Mazars' damage with a crack band, for tension", (
+			Parameter("tensileStrength", "PA", positive, "strength in uniaxial tension"),
+			Parameter("fractureEnergy", "J/M2", positive, "fracture energy per area of crack"),
+		)
+	),
+	"von-mises": Law(
+		VonMisesMat, "metal that yields", (
+			Parameter("yieldStress", "PA", positive, "stress at which uniaxial tension yields"),
+			Parameter("hardening", "PA", not_negative, "slope of the yield stress over plastic strain"),
+		)
+	),
+	"elastic": Law(DeformableElastMat, "linear elasticity"),
+}
+
+
+def add_options(group):
+	"""Add the options of all laws to a group of a parser, each once."""
+	known = set()
+	for name, law in LAWS.items():
+		for parameter in law.parameters:
+			if parameter.attribute not in known:
+				known.add(parameter.attribute)
+				group.add_argument(
+					f"--{parameter.option}", type=parameter.kind, default=SUPPRESS,
+					metavar=parameter.unit,
+					help=(
+						f"{name}: {parameter.help} (default: "
+						f"{getattr(law.material(), parameter.attribute):g})"
+					)
+				)
+	group.add_argument(
+		"--set", type=assignment, action="append", default=[], metavar="NAME=VALUE",
+		help="any other attribute of the material, in its unit, as damageExponent=1; may be repeated"
+	)
+
+
+def assignment(text):
+	"""A name and a number of "name=number"."""
+	name, _, value = text.partition("=")
+	return name.strip(), float(value)
+
+
+def check(options, refuse):
+	"""Call *refuse* with a text about parameters of other laws."""
+	own = {parameter.attribute for parameter in LAWS[options.law].parameters}
+	for name, law in LAWS.items():
+		for parameter in law.parameters:
+			if parameter.attribute not in own and hasattr(options, parameter.option.replace("-", "_")):
+				refuse(f"argument --{parameter.option}: it belongs to --law {name}")
+	known = LAWS[options.law].material().dict()
+	for name, _ in options.set:
+		if not isinstance(known.get(name), (int, float)):
+			numbers = ", ".join(sorted(key for key, value in known.items() if isinstance(value, float)))
+			refuse(
+				f"argument --set: {LAWS[options.law].material.__name__} has no number '{name}'; "
+				f"it has {numbers}"
+			)
+
+
+def append(options):
+	"""The material "sample" of these options, in O.materials.
+
+	:raises ValueError: a parameter out of bounds
+	"""
+	law = LAWS[options.law]
+	usual = law.material()
+	values = {
+		name: getattr(usual, name) if getattr(options, name) is None else getattr(options, name)
+		for name in ("young", "poisson", "density")
+	}
+	for parameter in law.parameters:
+		given = getattr(options, parameter.option.replace("-", "_"), None)
+		if given is not None:
+			values[parameter.attribute] = given
+	for name, value in options.set:
+		values[name] = type(getattr(usual, name))(value)
+	material = law.material(label="sample", **values)
+	material.validate() if hasattr(material, "validate") else None
+	O.materials.append(material)
+	return material
