@@ -379,9 +379,25 @@ def _bonded(sample):
 	lost["mode (1 tension, 2 shear)"] = bonds["mode"][bonds["mode"] != HOLDS]  # in the order of the others
 	return {
 		"-spheres": grid(positions, np.arange(len(positions)), VTK_VERTEX, spheres),
-		"-bonds": grid(positions, rows[there], VTK_LINE, None, held),
+		"-bonds": grid(*_lines(positions, rows[there]), VTK_LINE, None, held),
 		"-broken": grid(broken["position"], np.arange(len(broken)), VTK_VERTEX, lost),
 	}
+
+
+def _lines(positions, rows):
+	"""Points, and rows of the two ends of each bond. One that crosses the border of a periodic cell goes from its
+	first sphere to the nearest image of the second, a point of its own."""
+	from yade import O
+	if not O.periodic or len(rows) == 0:
+		return positions, rows
+	cell = np.reshape(O.cell.hSize, (3, 3))
+	branch = positions[rows[:, 1]] - positions[rows[:, 0]]
+	shift = np.round(branch @ np.linalg.inv(cell).T) @ cell.T
+	across = np.flatnonzero(shift.any(axis=1))
+	images = positions[rows[across, 1]] - shift[across]
+	rows = rows.copy()
+	rows[across, 1] = len(positions) + np.arange(len(across))
+	return np.vstack([positions, images]), rows
 
 
 def _in_space(values):

@@ -2,14 +2,13 @@
 """Bonded spheres in periodic cells."""
 import itertools
 
-
 import numpy as np
 import pytest
 
 from yade import (
 	BondedMat, Matrix3, O, PeriTriaxController, Vector3, Vector3i, pack, utils
 )
-from yade.ddem import bonded, packing
+from yade.ddem import bonded, packing, vtk
 
 RADIUS = 1e-3
 SIDE = 2 * RADIUS  # of the cubic lattice
@@ -144,6 +143,22 @@ def test_a_saved_cell_goes_on(tmp_path):
 	O.run(50, True)
 	assert again.positions == pytest.approx(places, rel=1e-12)
 	assert np.array(utils.getStress()) == pytest.approx(stress, rel=1e-9, abs=1e-9 * abs(stress).max())
+
+
+def test_paraview_draws_bonds_to_the_nearest_image(tmp_path):
+	"""Read back with VTK: every bond of the lattice is as long as the lattice's step, none crosses the cell."""
+	from vtkmodules.util.numpy_support import vtk_to_numpy
+	from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+	sample = lattice(5)
+	vtk.Recorder(sample, str(tmp_path / "cell"))()
+	reader = vtkXMLUnstructuredGridReader()
+	reader.SetFileName(str(tmp_path / "cell-bonds-0000.vtu"))
+	reader.Update()
+	drawn = reader.GetOutput()
+	points = vtk_to_numpy(drawn.GetPoints().GetData())
+	ends = vtk_to_numpy(drawn.GetCells().GetConnectivityArray()).reshape(-1, 2)
+	assert len(ends) == len(sample.bonds) == 3 * 125 and len(points) == 125 + 3 * 25
+	assert np.linalg.norm(points[ends[:, 1]] - points[ends[:, 0]], axis=1) == pytest.approx(SIDE)
 
 
 def test_neighbours_in_a_sheared_cell_are_those_of_all_images():

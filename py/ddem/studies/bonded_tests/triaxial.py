@@ -30,8 +30,13 @@ class Triaxial(BondedTest):
 		)
 
 		group.add_argument(
-			"--confinement", choices=("walls", "jacket"), default=SUPPRESS,
-			help="what keeps the pressure: rigid walls around a prism, or a flexible jacket (default: walls)"
+			"--confinement",
+			choices=("walls", "jacket"),
+			default=SUPPRESS,
+			help=(
+				"what keeps the pressure: rigid walls around a prism, or a flexible jacket (default: "
+				"walls)"
+			),
 		)
 
 	def check(self, options, refuse):
