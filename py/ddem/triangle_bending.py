@@ -20,7 +20,7 @@ def three_point_bending(block, span, velocity, ramp=0.0, strip=None):
 
 	Supports are free to slide and to turn the beam on them; the loaded strip neither slides nor turns.
 
-	:param block: :class:`Block`, a rectangle, longest along x; it may have a notch in the bottom
+	:param block: :class:`Block`, a rectangle, longest along x
 	:param span: distance of the supports, the beam's middle between them [m]
 	:param velocity: of the load, downwards [m/s]
 	:param ramp: time over which it grows linearly from zero [s]
@@ -56,6 +56,8 @@ def three_point_bending(block, span, velocity, ramp=0.0, strip=None):
 class Bending:
 	"""A beam on two supports under a load in its middle: what it does and what it feels; see
 	:func:`three_point_bending`. It serves wherever platens do. Forces are positive as loading has them."""
+
+	notch = 0.0  #: depth of a notch, which this section has not [m]
 
 	def __init__(self, block, span, velocity, ramp, strip):
 		mesh, self.sample, self.span = block.mesh, block, span

@@ -313,7 +313,7 @@ def _triangles(block, sub_elements):
 	tensors = {"stress [Pa]": block.stress, "strain": block.strain, "plastic strain": block.plastic_strain}
 	scalars = {"damage": block.sub_element_damage}
 	for field, unit, components in block.fields:
-		name = _title(field, unit)
+		name = title(field, unit)
 		if name not in tensors:
 			(scalars if components == 1 else tensors)[name] = block.field(field)
 	single = {"rotation [rad]": block.rotation, "region": block.mesh.regions, "id": block.triangle_ids}
@@ -341,8 +341,9 @@ def _triangles(block, sub_elements):
 	return grid(corners, cells, VTK_TRIANGLE, points, {**values, **single})
 
 
-def _title(field, unit):
-	"""Name of an array: a law's field in words, with its unit, as "damage dissipation [J/m3]"."""
+def title(field, unit):
+	"""Name of the array that a law's field has in files: in words, with its unit,
+	as "damage dissipation [J/m3]"."""
 	words = re.sub("[A-Z]", lambda letter: " " + letter[0].lower(), field)
 	unit = unit.replace("²", "2").replace("³", "3")  # ParaView's lists and formulas are happier without
 	return words if unit == "-" else f"{words} [{unit}]"

@@ -210,7 +210,13 @@ def assert_fields_reach_paraview(block, folder, names):
 	reader.SetFileName(str(next(folder.rglob("*.vtu"))))
 	reader.Update()
 	cells = reader.GetOutput().GetCellData()
+	units = {name: unit for name, unit, _ in block.fields}
 	for name in names:
 		field = block.field(name)
 		assert field.shape == (len(block.triangle_ids), 3)
-		assert np.allclose(vtk_to_numpy(cells.GetArray(name)), field.mean(axis=1), rtol=1e-6, atol=0)
+		assert np.allclose(
+			vtk_to_numpy(cells.GetArray(vtk.title(name, units[name]))),
+			field.mean(axis=1),
+			rtol=1e-6,
+			atol=0,
+		)

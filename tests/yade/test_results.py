@@ -8,6 +8,7 @@ import numpy as np
 import origins
 import pytest
 import script_modules
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade import ConcreteDamageMat, DeformableEngine, O, ddem
 from yade.ddem import provenance
@@ -106,7 +107,7 @@ def test_vtk_files_keep_their_arrays(tmp_path):
 	data = ddem.vtk.grid(np.eye(3), [[0, 1, 2]], ddem.vtk.VTK_TRIANGLE, {"value": np.arange(3.0)})
 	ddem.vtk.write(data, str(tmp_path / "one.vtu"), time=0.5)
 	ddem.vtk.write(data, str(tmp_path / "one.vtu"), time=0.75)  # again: not twice in it
-	reader = ddem.vtk.vtkXMLUnstructuredGridReader()
+	reader = vtkXMLUnstructuredGridReader()
 	reader.SetFileName(str(tmp_path / "one.vtu"))
 	reader.Update()
 	fields = reader.GetOutput().GetFieldData()
