@@ -419,10 +419,23 @@ def _check_generator(generator, *order):
 
 
 def _fill(shape, rmin, rmax, seed, fails):
-	"""Rows x, y, z, r: seeds, then spheres as they were inserted."""
-	return _packing.fill(
+	"""Rows x, y, z, r, neighbours close to each other."""
+	spheres = _packing.fill(
 		shape.dimension, shape.lower, shape.upper, shape.walls, float(rmin), float(rmax), int(seed), int(fails)
 	)
+	return spheres[_along_a_curve(spheres[:, :3], 2 * rmax)]
+
+
+def _along_a_curve(centres, cell):
+	"""Rows in the order of cells along a curve that fills space (Morton 1966). In the order of insertion neighbours
+	lie anywhere in memory, and from some ten thousand spheres on a step waits for it:
+	1.5 times as long with 95 000."""
+	place = np.floor((centres - centres.min(axis=0)) / cell).astype(np.int64)
+	key = np.zeros(len(centres), np.int64)
+	for bit in range(21):
+		for axis in range(3):
+			key |= (place[:, axis] >> bit & 1) << (3 * bit + axis)
+	return np.argsort(key, kind="stable")
 
 
 def _checked_cell(cell):

@@ -52,13 +52,21 @@ def test_filled_shapes_hold_spheres_that_touch_but_do_not_overlap(shape):
 	assert (spheres.lower[:shape.dimension] == shape.lower[:shape.dimension]).all()
 
 
+def test_neighbours_lie_close_in_memory():
+	"""Half of the pairs that touch are less than a hundredth of the rows apart;
+	in the order of insertion a third."""
+	spheres = packing.fill(BOX, 0.06, 0.12, seed=1, fails=200)
+	pairs = spheres.neighbours(1e-4)
+	assert np.median(abs(pairs[:, 0] - pairs[:, 1])) < 0.01 * len(spheres)
+
+
 def digest(spheres):
 	rows = np.column_stack([spheres.centres, spheres.radii])
 	return hashlib.sha256(rows.astype("<f8").tobytes()).hexdigest()[:16]
 
 
 @pytest.mark.parametrize("shape, expected", [
-	(BOX, "7a16a088567c41cb"), (CYLINDER, "d99decf8af594358"), (DISC, "6f55461d9bd90135"),
+	(BOX, "05dfef79597e188b"), (CYLINDER, "0f316151dc2180aa"), (DISC, "3fc4579da068c95f"),
 ], ids=str)
 def test_the_same_seed_gives_the_same_bits_on_any_machine(shape, expected):
 	"""The digests were recorded once; another one means that packings which a seed stands for have changed."""
