@@ -95,8 +95,8 @@ def test_mazars_concrete_breaks_in_tension_at_its_strength(perform):
 
 
 def test_concrete_breaks_in_tension_where_a_point_of_its_law_does(perform):
-	"""Without scatter the sample is uniform until it breaks: a material point in plane strain with a free side that is
-	strained as fast."""
+	"""Without scatter the sample is uniform until it breaks: a material point in plane strain with a free side that
+	is strained as fast."""
 	figures, _ = perform(
 		"--test", "tension", "--spread", 0, "--edge", 0.025, "--velocity", 0.05, "--rows", 300, *BARE
 	)
