@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
+
 from . import provenance
 
 VTK_VERTEX, VTK_LINE, VTK_TRIANGLE = 1, 3, 5  #: VTK's numbers of these kinds of cells
@@ -181,7 +182,7 @@ class _Blocks:
 
 def _replace(path, content):
 	"""Write a file that is complete at any moment."""
-	with open(path + ".new", "wb", buffering=0) as file:
+	with open(path + ".new", "wb") as file:
 		file.write(content)
 	os.replace(path + ".new", path)
 
@@ -202,7 +203,7 @@ class _Collection:
 		files = [path for path in glob.glob(glob.escape(name) + "-*.vtu") if self._number(path) is not None]
 		listed = self._listed()
 		for path in files:
-			if os.path.basename(path) not in listed and not _is_ours(path):
+			if not _is_ours(path):
 				raise FileExistsError(
 					f"{path} is in the way and no recorder has written it: move it, or give the "
 					"recorder another name"

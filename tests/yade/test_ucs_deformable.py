@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import script_modules
 
+from yade.ddem.materialpoint import MaterialPoint, concrete
 from yade.ddem.series import Series
 from yade.ddem.studies.deformable_laws import LAWS
 from yade.ddem.studies.deformable_tests import TESTS
@@ -91,6 +92,18 @@ def test_mazars_concrete_breaks_in_tension_at_its_strength(perform):
 	assert figures["peak_passed"]
 	assert figures["tensile_MPa"] == pytest.approx(3 / (1 - 0.2**2), rel=0.02)
 	assert figures["damage_at_end"] > 0.05
+
+
+def test_concrete_breaks_in_tension_where_a_point_of_its_law_does(perform):
+	"""Without scatter the sample is uniform until it breaks: a material point in plane strain with a free side that
+	is strained as fast."""
+	figures, _ = perform(
+		"--test", "tension", "--spread", 0, "--edge", 0.025, "--velocity", 0.05, "--rows", 300, *BARE
+	)
+	duration, strain = 1e-3 / (2 * 0.05 / 0.2), 1e-3
+	point = MaterialPoint(concrete()).path(duration, strain={"yy": strain}, stress={"xx": 0.0}, steps=2000)
+	assert figures["tensile_MPa"] == pytest.approx(1e-6 * point.stress[:, 1].max(), rel=0.02)
+	assert figures["strain_at_peak"] == pytest.approx(strain * point.stress[:, 1].argmax() / 2000, rel=0.1)
 
 
 def test_a_metal_yields_at_the_stress_of_plane_strain(perform):

@@ -34,8 +34,8 @@ def sample_rows(options, block, material, dt):
 		*parameter_tables.rows(material, _ELASTICITY),
 	]
 	for parameter in law.parameters:
-		unit = parameter.unit.replace("PA", "Pa").replace("M3", "m³").replace("M2", "m²")
-		made.append((parameter.attribute, f"{getattr(material, parameter.attribute):g} {unit}", parameter.help))
+		value = getattr(material, parameter.attribute)
+		made.append((parameter.attribute, f"{value:g} {parameter.shown_unit}", parameter.help))
 	for name, value in options.set:
 		made.append((name, f"{value:g}", f"attribute of {type(material).__name__}"))
 	if options.spread:

@@ -21,6 +21,11 @@ class Parameter:
 		"""Its name on the command line, without dashes in front."""
 		return "".join("-" + c.lower() if c.isupper() else c for c in self.attribute)
 
+	@property
+	def shown_unit(self):
+		"""The unit as texts have it."""
+		return self.unit.replace("PA", "Pa").replace("M3", "m³").replace("M2", "m²")
+
 
 @dataclass(frozen=True)
 class Law:
@@ -39,7 +44,7 @@ LAWS = {
 				"fractureEnergy",
 				"J/M3",
 				positive,
-				"mean fracture energy; scalar-damage: per area of crack [J/m²], 100",
+				"mean fracture energy, per volume",
 			),
 		)
 	),
@@ -61,19 +66,24 @@ LAWS = {
 
 def add_options(group):
 	"""Add the options of all laws to a group of a parser, each once."""
-	known = set()
+	shared = {}  # laws by the attribute that their materials share
 	for name, law in LAWS.items():
 		for parameter in law.parameters:
-			if parameter.attribute not in known:
-				known.add(parameter.attribute)
-				group.add_argument(
-					f"--{parameter.option}", type=parameter.kind, default=SUPPRESS,
-					metavar=parameter.unit,
-					help=(
-						f"{name}: {parameter.help} (default: "
-						f"{getattr(law.material(), parameter.attribute):g})"
-					)
-				)
+			shared.setdefault(parameter.attribute, []).append((name, law, parameter))
+	for attribute, users in shared.items():
+		said = "; ".join(
+			(
+				f"{name}: {parameter.help} (default: {getattr(law.material(), attribute):g} "
+				f"{parameter.shown_unit})"
+			)
+			for name, law, parameter in users
+		)
+		first = users[0][2]
+		group.add_argument(
+			f"--{first.option}", type=first.kind, default=SUPPRESS,
+			metavar=first.unit if len(users) == 1 else "E",
+			help=said
+		)
 	group.add_argument(
 		"--set", type=assignment, action="append", default=[], metavar="NAME=VALUE",
 		help="any other attribute of the material, in its unit, as damageExponent=1; may be repeated"
