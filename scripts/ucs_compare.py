@@ -407,21 +407,7 @@ def read_options():
 		"--fails", type=count, default=1000, metavar="N",
 		help="the packing of spheres is finished when so many in a row found no place"
 	)
-	output = parser.add_argument_group("output")
-	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
-	output.add_argument(
-		"--pictures",
-		action=argparse.BooleanOptionalAction,
-		default=True,
-		help="pictures, in the report and as PNG files",
-	)
-	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
-	output.add_argument(
-		"--progress",
-		action=argparse.BooleanOptionalAction,
-		default=True,
-		help="progress bars, where the terminal can show them",
-	)
+	commandline.output_options(parser)
 	options = parser.parse_args()
 	provenance.begin(vars(options))
 

@@ -9,7 +9,7 @@ from argparse import SUPPRESS
 from yade import O
 
 from .. import packing, provenance
-from . import uniaxial
+from . import commandline, uniaxial
 from .bonded_specimen import CRITERIA, MASS
 from .bonded_tests import TESTS
 from .commandline import count, not_negative, number, positive, require_writable, seed, share
@@ -248,25 +248,7 @@ def read_options():
 		"--stop", type=share, default=SUPPRESS, metavar="PART",
 		help=f"the test ends when the stress stays below this part of the peak; 0: never {_defaults('stop')}"
 	)
-	output = parser.add_argument_group("output")
-	output.add_argument(
-		"--rows", type=count, default=uniaxial.ROWS, metavar="N",
-		help="records up to the largest strain, at least 100"
-	)
-	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
-	output.add_argument(
-		"--pictures",
-		action=argparse.BooleanOptionalAction,
-		default=True,
-		help="pictures, in the report and as PNG files",
-	)
-	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
-	output.add_argument(
-		"--progress",
-		action=argparse.BooleanOptionalAction,
-		default=True,
-		help="progress bar, where the terminal can show it",
-	)
+	commandline.output_options(parser, rows=(uniaxial.ROWS, uniaxial.SNAPSHOTS))
 	options = parser.parse_args()
 	provenance.begin({name: value for name, value in vars(options).items() if name != "packings"})
 

@@ -37,6 +37,32 @@ def not_negative(text):
 	return value
 
 
+def output_options(parser, rows=None):
+	"""Options of a test's output, --vtk, --pictures, --pdf, --progress, in a group of their own.
+
+	:param rows: default and least value of --rows; None leaves that option out
+	:returns: the group, for more of them
+	"""
+	output = parser.add_argument_group("output")
+	if rows is not None:
+		usual, least = rows
+		output.add_argument(
+			"--rows", type=count, default=usual, metavar="N",
+			help=f"records up to the largest strain, at least {least}"
+		)
+	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
+	output.add_argument(
+		"--pictures", action=argparse.BooleanOptionalAction, default=True,
+		help="pictures, in the report and as PNG files"
+	)
+	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
+	output.add_argument(
+		"--progress", action=argparse.BooleanOptionalAction, default=True,
+		help="progress bars, where the terminal can show them"
+	)
+	return output
+
+
 def share(text):
 	value = float(text)
 	if not 0 <= value < 1:

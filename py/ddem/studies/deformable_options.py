@@ -8,7 +8,7 @@ from argparse import SUPPRESS
 from yade import O
 
 from .. import mesh, provenance
-from . import deformable_laws, uniaxial
+from . import commandline, deformable_laws, uniaxial
 from .commandline import count, not_negative, number, positive, require_writable, seed, share
 from .deformable_laws import LAWS
 from .deformable_tests import TESTS
@@ -131,21 +131,7 @@ def read_options():
 		"--stop", type=share, default=SUPPRESS, metavar="PART",
 		help="the test ends when the stress stays below this part of the peak; 0: never (default: 0.2)"
 	)
-	output = parser.add_argument_group("output")
-	output.add_argument(
-		"--rows", type=count, default=uniaxial.ROWS, metavar="N",
-		help=f"records up to the largest strain, at least {uniaxial.SNAPSHOTS}"
-	)
-	output.add_argument("--vtk", action=argparse.BooleanOptionalAction, default=True, help="ParaView files")
-	output.add_argument(
-		"--pictures", action=argparse.BooleanOptionalAction, default=True,
-		help="pictures, in the report and as PNG files"
-	)
-	output.add_argument("--pdf", action="store_true", help="each picture as a PDF file as well")
-	output.add_argument(
-		"--progress", action=argparse.BooleanOptionalAction, default=True,
-		help="progress bar, where the terminal can show it"
-	)
+	commandline.output_options(parser, rows=(uniaxial.ROWS, uniaxial.SNAPSHOTS))
 	options = parser.parse_args()
 	provenance.begin(vars(options))
 
