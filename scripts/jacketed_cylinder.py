@@ -29,6 +29,7 @@ RADIUS, LENGTH = 6e-3, 16e-3  # [m]
 STEPS = 100  # looks at the stress
 
 
+@commandline.steps_told()
 def main():
 	options = read_options()
 	sample = make(options)

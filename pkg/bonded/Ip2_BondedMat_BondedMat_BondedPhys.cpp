@@ -63,7 +63,6 @@ namespace {
 		return phys && phys->bonded;
 	}
 
-	/// Geometry of the pair, as Ig2_Sphere_Sphere_ScGeom or …6D would have made it and will update it.
 	/// Period of the cell in which the second of two bodies is closest to the first; none without a cell.
 	Vector3i nearestPeriod(const Scene& scene, const Vector3r& branch)
 	{
@@ -93,6 +92,7 @@ namespace {
 		refuse(pair, text.str());
 	}
 
+	/// Geometry of the pair, as Ig2_Sphere_Sphere_ScGeom or …6D would have made it and will update it.
 	/// \param branch from the centre of one to that of the other, or of its periodic image
 	shared_ptr<ScGeom6D> makeGeometry(
 	        const Particle& a, const Particle& b, const Scene& scene, const shared_ptr<Interaction>& interaction,

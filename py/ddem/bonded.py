@@ -44,7 +44,7 @@ from yade import (
 	ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
-from . import broken_bonds, meter, provenance
+from . import broken_bonds, cells, meter, provenance
 from . import packing as packings
 from .arrays import BodyIds, fixed
 from .bonded_bending import Bending, three_point_bending
@@ -140,8 +140,13 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 def _in_cell(packing):
 	"""The packing with the scene's cell, where that is periodic."""
 	if not O.periodic:
+		if packing.cell is not None and len(O.bodies) > 0:
+			raise ValueError(
+				"the packing fills a periodic cell and the scene has bodies already: "
+				"set O.periodic = True and O.cell.hSize for all of them first"
+			)
 		return packing
-	sides = np.array(O.cell.hSize, float).reshape(3, 3)
+	sides = cells.sides()
 	if packing.cell is None:
 		packing = copy.copy(packing)
 		packing.cell = sides

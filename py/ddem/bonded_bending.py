@@ -17,6 +17,8 @@ from yade import (
 	utils
 )
 
+from .cells import require_faces
+
 _SKIN = 1.1  # distance of a centre from a face, in radii, up to which a strip holds it, as platens do
 
 
@@ -42,6 +44,7 @@ def three_point_bending(sample, span, velocity, ramp=0.0, strip=None, stiffness=
 	:raises ValueError: numbers out of range, a sample that is no prism or no beam, supports that do not lie below
 		it, a strip that overlaps another or has no sphere. Nothing is appended then.
 	"""
+	require_faces()
 	length, height, depth = _beam(sample)
 	for name, value, unit in (("span", span, "m"), ("velocity", velocity, "m/s")):
 		if not (value > 0 and math.isfinite(value)):

@@ -15,6 +15,7 @@ import numpy as np
 from yade import Body, ElasticWallMat, O, Quaternion, RoundPlaten, Vector3
 
 from .bonded_loads import Platens, platens
+from .cells import require_faces
 
 JAWS = ("curved", "flat")  #: what brazilian() knows
 CURVATURE = 1.5  #: radius of a curved jaw over that of the disc (ISRM 1978)
@@ -35,6 +36,7 @@ def brazilian(sample, velocity, jaws="curved", ramp=0.0, stiffness=100e9, both=T
 		that across the loaded diameter in the middle of an elastic disc of diameter D and length L
 	:raises ValueError: other jaws, speeds out of range, a sample that is no disc. Nothing is appended then.
 	"""
+	require_faces()
 	if jaws not in JAWS:
 		raise ValueError(f"brazilian: jaws = '{jaws}' is unknown; use {' or '.join(map(repr, JAWS))}")
 	if not (velocity > 0 and math.isfinite(velocity)):

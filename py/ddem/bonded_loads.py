@@ -14,6 +14,7 @@ from yade import (
 )
 
 from .jacket import jacket
+from .cells import require_faces
 from .loading import checked_legs
 
 _AXES = "xyz"
@@ -73,11 +74,7 @@ def platens(
 def _check_area(sample, area, axis):
 	if axis not in _AXES:
 		raise ValueError(f"axis = '{axis}' is unknown; use 'x', 'y' or 'z'")
-	if O.periodic:
-		raise ValueError(
-			"a sample in a periodic cell has no faces for walls: load the cell, by O.cell.velGrad or "
-			"PeriTriaxController (see the manual), or set O.periodic = False before the sample is made"
-		)
+	require_faces()
 	box = float(np.delete(sample.upper - sample.lower, _AXES.index(axis)).prod())
 	if area is None:
 		sample.face(axis)

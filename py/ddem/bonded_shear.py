@@ -16,6 +16,8 @@ from yade import (
 	ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine, ServoWall, utils
 )
 
+from .cells import require_faces
+
 # dashpot of the normal load, of that which lets no wave come back; against the whole of it a sample of rock that rises
 # at 0.1 m/s would raise the normal stress by a MPa
 _DASHPOT = 0.3
@@ -46,6 +48,7 @@ def direct_shear(
 	:raises ValueError: numbers out of range, a sample that is no prism, a gap above half of its height, no sphere
 		at an end. Nothing is appended then.
 	"""
+	require_faces()
 	density = sum(O.bodies[i].state.mass for i in sample.ids) / float((sample.upper - sample.lower).prod())
 	young = max(O.bodies[i].mat.young for i in sample.ids)
 	size = [float(s) for s in sample.upper - sample.lower]

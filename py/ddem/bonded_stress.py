@@ -1,8 +1,12 @@
 # GPL v2 or later, see LICENSE.
 """Stress inside of a sample of bonded spheres."""
+import itertools
+
 import numpy as np
 
 from yade import O
+
+from . import cells
 
 
 def mean_stress(sample, lower, upper):
@@ -13,7 +17,8 @@ def mean_stress(sample, lower, upper):
 	σ = (1/V) Σ l ⊗ f (Bagi 1996). Bonds of spheres of the sample alone count, contacts of broken surfaces do not.
 
 	:param sample: :class:`bonded.BondedSample`
-	:param lower, upper: corners of the box (3,) [m]
+	:param lower, upper: corners of the box (3,) [m]; in a periodic cell that may lie anywhere, and what repeats
+		in it counts as often
 	:raises ValueError: an upper corner that is not above the lower one, a box with no bond in it
 
 	Limits: of a box a few spheres wide it is the stress of these few.
@@ -26,7 +31,8 @@ def mean_stress(sample, lower, upper):
 	pairs = sample.bonds
 	rows = sample.rows(pairs)
 	one, two = sample.positions[rows].transpose(1, 0, 2)
-	share = _share_within(one, two, lower, upper)
+	one, two, images = _in_cell(one, two, lower, upper)
+	share = sum(_share_within(one + shift, two + shift, lower, upper) for shift in images)
 	if not (share > 0).any():
 		raise ValueError(f"mean_stress: no bond runs through the box from {tuple(lower)} to {tuple(upper)} m")
 	total = np.zeros((3, 3))
@@ -36,6 +42,20 @@ def mean_stress(sample, lower, upper):
 		force = np.array(bond.phys.normalForce + bond.phys.shearForce) * (1 if bond.id1 == i else -1)
 		total -= part * np.outer(branch, force)
 	return 0.5 * (total + total.T) / float((upper - lower).prod())
+
+
+def _in_cell(one, two, lower, upper):
+	"""Ends of bonds (n, 3), in a periodic cell the second one as the nearest image to the first, which is moved
+	into the cell; and the shifts by which what repeats reaches a box."""
+	cell = cells.sides()
+	if cell is None:
+		return one, two, [np.zeros(3)]
+	inverse = np.linalg.inv(cell).T
+	two = one + cells.nearest(two - one)
+	into = -np.floor(one @ inverse) @ cell.T
+	corners = np.array(list(itertools.product(*zip(lower, upper)))) @ inverse
+	ranges = [range(int(np.floor(c.min())) - 1, int(np.ceil(c.max())) + 1) for c in corners.T]
+	return one + into, two + into, [cell @ shift for shift in itertools.product(*ranges)]
 
 
 def _share_within(one, two, lower, upper):

@@ -6,7 +6,7 @@ from yade import (
 )
 
 #: entries of O.energy that say what came in from outside, as YADE writes them: with a minus sign
-EXTERNAL = ("externalWork", "gravWork", "edgeWork", "jacketWork")
+EXTERNAL = ("externalWork", "gravWork", "edgeWork", "jacketWork", "velGradWork")
 #: entries that a sound model cannot make negative: a law that creates energy borrows it there, without the total moving
 NEVER_NEGATIVE = ("elastPotential", "elastRotation", "plasticFlow", "damage", "nonviscDamp", "edgeAbsorption")
 

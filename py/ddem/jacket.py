@@ -10,6 +10,8 @@ import numpy as np
 
 from yade import JacketPressure, O, Vector2i, Vector3, Vector3i
 
+from .cells import require_faces
+
 _AXES = "xyz"
 _CORNERS = 64  # of the polygon around each sphere's outline
 _PARTS = 6  # of the distance between nodes, to which the side is split among spheres
@@ -41,6 +43,7 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 	Limits: see :yref:`JacketPressure`. The surface layer of a packing has fewer bonds and is softer than the rest,
 	and a jacket does not spread its load as a rigid wall does.
 	"""
+	require_faces()
 	if axis not in _AXES:
 		raise ValueError(f"axis = '{axis}' is unknown; use 'x', 'y' or 'z'")
 	for name, value, unit in (("pressure", pressure, "Pa"), ("ramp", ramp, "s")):

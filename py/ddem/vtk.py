@@ -389,14 +389,13 @@ def _bonded(sample):
 def _lines(positions, rows):
 	"""Points, and rows of the two ends of each bond. One that crosses the border of a periodic cell goes from its
 	first sphere to the nearest image of the second, a point of its own."""
-	from yade import O
-	if not O.periodic or len(rows) == 0:
-		return positions, rows
-	cell = np.reshape(O.cell.hSize, (3, 3))
+	from . import cells
 	branch = positions[rows[:, 1]] - positions[rows[:, 0]]
-	shift = np.round(branch @ np.linalg.inv(cell).T) @ cell.T
-	across = np.flatnonzero(shift.any(axis=1))
-	images = positions[rows[across, 1]] - shift[across]
+	nearest = cells.nearest(branch)
+	across = np.flatnonzero((nearest != branch).any(axis=1))
+	if len(across) == 0:
+		return positions, rows
+	images = positions[rows[across, 0]] + nearest[across]
 	rows = rows.copy()
 	rows[across, 1] = len(positions) + np.arange(len(across))
 	return np.vstack([positions, images]), rows

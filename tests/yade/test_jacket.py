@@ -161,6 +161,27 @@ def test_a_jacket_does_the_work_it_books():
 	assert book.largest < 1e-4
 
 
+def test_its_work_is_that_of_the_volume_which_the_sides_sweep():
+	"""Under platens that approach, at a constant pressure: p dV less what the ends sweep, p A dh."""
+	O.trackEnergy = True
+	sample = cylinder()
+	test = ddem.bonded.triaxial(sample, 20e6, strain=5e-3, duration=2e-4, velocity=2.0, sides="jacket")
+	run(test, 1e-4, viscosity=1e4)
+	around = test.confinement
+
+	def now():
+		ends = np.array(around.engine.nodes())[:, 1]
+		return around.engine.work, around.volume, np.ptp(ends)
+
+	work, volume, height = now()
+	O.run(int(1.5e-4 / O.dt), True)
+	work2, volume2, height2 = now()
+	area = 0.5 * (volume / height + volume2 / height2)
+	assert height - height2 > 1e-3 * height
+	swept = (volume - volume2) - area * (height - height2)
+	assert work2 - work == pytest.approx(20e6 * swept, rel=0.05)
+
+
 def test_a_jacket_gives_the_same_with_yades_integrator():
 	"""In the arrays, and by State and O.forces."""
 	results = []
