@@ -221,7 +221,14 @@ def flattened_disc(diameter, length, flat=math.radians(30)):
 
 	:param diameter, length: [m]
 	:param flat: angle that each flat end takes [rad]
+	:raises ValueError: a diameter or length that is not positive and finite, an angle that is not between 0 and π/2
 	"""
+	for name, value in (("diameter", diameter), ("length", length)):
+		if not (value > 0 and math.isfinite(value)):
+			raise ValueError(f"flattened_disc: {name} = {value} m must be positive and finite")
+	if not 0 < flat < math.pi / 2:
+		degrees = f"; degrees? Then math.radians({flat})" if math.pi / 2 <= flat < 90 else ""
+		raise ValueError(f"flattened_disc: flat = {flat} rad must lie between 0 and π/2{degrees}")
 	half = 0.5 * flat
 	around = [(math.sin(a), math.cos(a)) for a in (2 * math.pi * k / 72 for k in range(72))]
 	level = math.cos(half)

@@ -169,3 +169,13 @@ def test_bad_shapes_are_refused(make, words):
 def test_bad_orders_are_refused(change, words):
 	with pytest.raises(ValueError, match=words):
 		packing.fill(**{**dict(shape=BOX, rmin=0.5, rmax=1), **change})
+
+
+@pytest.mark.parametrize("arguments, words", [
+	((0.02, 0.008, 30), r"flat = 30 rad must lie between 0 and π/2; degrees\? Then math.radians\(30\)"),
+	((0.02, 0.008, 0), "flat = 0 rad must lie between 0 and π/2$"), ((0.02, 0.008, math.nan), "flat = nan rad"),
+	((-0.02, 0.008), "diameter = -0.02 m must be positive"), ((0.02, 0), "length = 0 m must be positive"),
+])
+def test_a_flattened_disc_of_bad_numbers_is_refused(arguments, words):
+	with pytest.raises(ValueError, match=words):
+		shapes.flattened_disc(*arguments)
