@@ -18,6 +18,7 @@ from yade import (
 )
 
 _SKIN = 1.1  # distance of a centre from a face, in radii, up to which a strip holds it, as platens do
+GAUGES = ("above the left support", "at mid-span", "above the right support")  #: where the deflection is measured
 
 
 def three_point_bending(sample, span, velocity, ramp=0.0, strip=None, stiffness=None, notch=0.0):
@@ -203,12 +204,24 @@ class Bending:
 	@property
 	def deflection(self):
 		"""Of the neutral axis at mid-span against that above the supports, downwards [m], so that what supports
-		and load press into the beam does not enter, as a yoke measures it (ASTM C1609)."""
-		left, mid, right = (
-			float(BondedInteractionLoop.sphereArray(ids, "displacement")[:, 1].mean())
-			for ids in map(BondedInteractionLoop.existing, self._measured)
-		)
+		and load press into the beam does not enter, as a yoke measures it (ASTM C1609).
+
+		:raises RuntimeError: all spheres of one of these three gauges have been erased
+		"""
+		left, mid, right = (self._sinking(*gauge) for gauge in zip(GAUGES, self._measured))
 		return 0.5 * (left + right) - mid
+
+	@staticmethod
+	def _sinking(place, ids):
+		"""Mean displacement along y of the spheres of a gauge [m]; those that were erased do not count."""
+		there = BondedInteractionLoop.existing(ids)
+		if len(there) == 0:
+			named = ", ".join(f"#{i}" for i in ids[:5]) + (" …" if len(ids) > 5 else "")
+			raise RuntimeError(
+				f"Bending: the gauge {place}, near the neutral axis, has lost all of its {len(ids)} "
+				f"spheres ({named}), which were erased: there is no deflection to measure"
+			)
+		return float(BondedInteractionLoop.sphereArray(there, "displacement")[:, 1].mean())
 
 	@property
 	def strain(self):
