@@ -223,3 +223,29 @@ def test_only_beams_bend():
 	sample = ddem.bonded.append(ddem.packing.fill(core, 0.8e-3, 2e-3), "rock")
 	with pytest.raises(ValueError, match="the sample must be a prism"):
 		ddem.bonded.three_point_bending(sample, 0.02, 0.1)
+
+
+def test_a_loaded_scene_has_its_bending_again(tmp_path):
+	load, lines = ddem.bonded.three_point_bending(beam(notch=0.003), 0.028, 0.05, ramp=1e-5, notch=0.003), []
+	run(load, 5e-5)
+	O.save(str(tmp_path / "half.yade.gz"))
+	results = []
+	for again in (False, True):
+		if again:
+			O.reset()
+			O.load(str(tmp_path / "half.yade.gz"))
+			load = ddem.bonded.Bending.from_scene(ddem.bonded.BondedSample.from_scene())
+		O.run(100, True)
+		results.append(
+			[
+				getattr(load, name)
+				for name in ("deflection", "strain", "stress", "force_bottom", "area", "span", "strip")
+			]
+			+ [len(load.engines)]
+		)
+		lines.append(np.concatenate(load.outlines))
+	assert results[0] == results[1] and results[0][0] != 0
+	assert np.array_equal(*lines)
+	O.bodies.erase(load.load)
+	with pytest.raises(RuntimeError, match="the scene has 0 loads that it says are a bending, where one is asked"):
+		ddem.bonded.Bending.from_scene(load.sample)
