@@ -243,3 +243,12 @@ def test_a_crushing_scene_goes_on_with_the_same_bits_after_loading(tmp_path):
 		O.run(60, True)
 		again = bonded.BondedSample.from_scene()
 		assert (again.positions == places).all() and (again.spins == spins).all(), k
+
+
+def test_a_sample_that_takes_the_place_of_another_is_the_one_that_the_scene_knows(tmp_path):
+	"""As in a loop over packings that clears the bodies but does not reset the scene."""
+	round_sample()
+	O.bodies.clear()
+	bonded.append(packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200), "rock")
+	loaded(tmp_path)
+	assert bonded.BondedSample.from_scene().is_prism
