@@ -44,7 +44,7 @@ from yade import (
 	ServoWall, Sphere, Vector3, ViscousBodyDamping, utils
 )
 
-from . import broken_bonds, cells, meter, provenance
+from . import broken_bonds, cells, meter, provenance, scene_notes, shapes
 from . import packing as packings
 from .arrays import BodyIds, fixed
 from .bonded_bending import Bending, three_point_bending
@@ -111,10 +111,6 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 			f"smallest radius is {packing.radii.min()} m)"
 		)
 	factors = None if scatter is None else np.asarray(scatter(len(pairs)), float)
-	was_periodic = O.periodic
-	if packing.cell is not None and not was_periodic:
-		O.periodic = True
-		O.cell.hSize = Matrix3(*packing.cell.ravel().tolist())
 	spheres = []
 	for centre, radius, material in zip(packing.centres, packing.radii, materials):
 		body = utils.sphere(Vector3(*centre), float(radius), material=material, color=color or (0.6, 0.6, 0.65))
@@ -124,6 +120,11 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 		if packing.flat:
 			body.state.blockedDOFs = "zXY"
 		spheres.append(body)
+	was_periodic = O.periodic
+	if packing.cell is not None and not was_periodic:
+		O.periodic = True
+		sides_before = Matrix3(O.cell.hSize)
+		O.cell.hSize = Matrix3(*packing.cell.ravel().tolist())
 	# one by one: bodies that YADE takes as a list are never freed, with their bonds 1.5 kB a bond
 	ids = BodyIds([O.bodies.append(body) for body in spheres])
 	try:
@@ -131,14 +132,17 @@ def append(packing, material, gap=None, color=None, mass_law="solid", scatter=No
 	except ValueError:
 		for i in ids:
 			O.bodies.erase(i)
-		O.periodic = was_periodic
+		if packing.cell is not None and not was_periodic:
+			O.cell.hSize = sides_before
+			O.periodic = False
 		raise
 	_warn_of_pieces(packing, pairs)
-	return BondedSample(ids, packing.lower, packing.upper, len(pairs), packing.shape and packing)
+	scene_notes.add_sample(ids, packing.lower, packing.upper, packing.shape)
+	return BondedSample(ids, packing, len(pairs))
 
 
 def _in_cell(packing):
-	"""The packing with the scene's cell, where that is periodic."""
+	"""The packing with the scene's cell and its box, where that is periodic."""
 	if not O.periodic:
 		if packing.cell is not None and len(O.bodies) > 0:
 			raise ValueError(
@@ -149,7 +153,8 @@ def _in_cell(packing):
 	sides = cells.sides()
 	if packing.cell is None:
 		packing = copy.copy(packing)
-		packing.cell = sides
+		packing.cell, packing.shape = sides, None
+		packing.lower, packing.upper = np.minimum(sides, 0).sum(axis=1), np.maximum(sides, 0).sum(axis=1)
 	elif not np.allclose(packing.cell, sides, rtol=1e-9, atol=1e-12 * np.abs(sides).max()):
 		raise ValueError(
 			f"the packing fills a cell with the sides {packing.cell.tolist()} m (columns), the scene's "
@@ -202,23 +207,44 @@ class BondedSample:
 	The arrays are copies and cannot be written to; velocities and positions are set in the State of the spheres.
 	"""
 
-	def __init__(self, ids, lower, upper, bonds, shaped=None):
+	def __init__(self, ids, packing, bonds, unknown=None):
+		"""
+		:param ids: of its spheres
+		:param packing: :class:`packing.Packing` at the start, whose box, shape and cell it has
+		:param bonds: their number at the start
+		:param unknown: why the shape is not known, in words; None: it is that of the packing, or its box
+		"""
 		self._appended = BodyIds(ids)
-		self._shaped = shaped
+		self._packing, self._unknown = packing, unknown
 		#: corners of the box at the start [m]
-		self.lower, self.upper = np.array(lower, float), np.array(upper, float)
+		self.lower, self.upper = np.array(packing.lower, float), np.array(packing.upper, float)
 		self.initial_bonds = bonds  #: number of bonds at the start
 
 	@classmethod
-	def from_scene(cls):
-		"""The sample in the current scene, all spheres of BondedMat together; for a scene that was loaded."""
+	def from_scene(cls, shape=None):
+		"""The sample in the current scene, all spheres of BondedMat together; for a scene that was loaded.
+		A scene keeps shape and box of the sample where :func:`append` has made one and nothing else.
+
+		:param shape: one of :mod:`shapes` that it filled at the start; None: what the scene says. Where that
+			says nothing, :meth:`face`, :attr:`volume` and what needs a shape raise, and the box is that of
+			the spheres.
+		:raises RuntimeError: the scene has no spheres of BondedMat
+		:raises ValueError: a shape whose box is not that of the spheres, up to their largest diameter
+		"""
 		bodies = [b for b in O.bodies if b and isinstance(b.shape, Sphere) and isinstance(b.mat, BondedMat)]
 		if not bodies:
 			raise RuntimeError("the scene has no spheres of BondedMat")
 		start = np.array([b.state.refPos for b in bodies])
 		radii = np.array([[b.shape.radius] for b in bodies])
-		box = packings.Packing(start, radii, cell=np.reshape(O.cell.refHSize, (3, 3)) if O.periodic else None)
-		sample = cls([b.id for b in bodies], box.lower, box.upper, 0)
+		ids = [b.id for b in bodies]
+		unknown = None
+		if O.periodic:
+			packing = packings.Packing(start, radii, cell=np.reshape(O.cell.refHSize, (3, 3)))
+		elif shape is not None:
+			packing = _filling(shape, start, radii)
+		else:
+			packing, unknown = _as_noted(ids, start, radii)
+		sample = cls(ids, packing, 0, unknown)
 		sample.initial_bonds = len(sample.bonds) + len(sample.broken)
 		return sample
 
@@ -240,31 +266,45 @@ class BondedSample:
 		"""Area of the face across an axis, "x", "y" or "z", at the start [m²]: that of the packing's shape
 		(:meth:`packing.Packing.area`), or of its box where it has none.
 
-		:raises ValueError: a shape without a flat face there, as a ball
+		:raises ValueError: a shape without a flat face there, as a ball; one that the scene it was loaded from
+			does not say
 		"""
-		number = "xyz".index(axis)
-		if self._shaped is not None:
-			return self._shaped.area(number)
-		return float(np.delete(self.upper - self.lower, number).prod())
+		return self._known().area("xyz".index(axis))
 
 	@property
 	def is_prism(self):
-		"""Whether it was packed as a box along the axes, or says no shape, so that its box stands for it."""
-		return self._shaped is None or isinstance(self._shaped.shape, packings.Box)
+		"""Whether it was packed as a box along the axes, or says no shape, so that its box stands for it.
+
+		:raises ValueError: the scene it was loaded from does not say
+		"""
+		return self._known().shape is None or isinstance(self._packing.shape, packings.Box)
 
 	@property
 	def volume(self):
-		"""Of the packing's shape at the start, or of its box where it has none [m³]."""
-		return self._shaped.volume if self.is_shaped else float((self.upper - self.lower).prod())
+		"""Of the periodic cell, of the packing's shape at the start, or of its box where it has none [m³].
+
+		:raises ValueError: the scene it was loaded from does not say
+		"""
+		return self._known().volume
+
+	def _known(self):
+		"""Its packing, whose shape is known."""
+		if self._unknown:
+			raise ValueError(
+				f"the shape of this sample is unknown: {self._unknown}; say it, as in "
+				"BondedSample.from_scene(shape=ddem.packing.Cylinder(…)), or give what loads it the "
+				"area= of its face"
+			)
+		return self._packing
 
 	@property
 	def is_shaped(self):
 		"""Whether its packing says which shape it fills."""
-		return self._shaped is not None
+		return self._packing.shape is not None
 
 	def is_cylinder(self, axis):
 		"""Whether it was packed as a cylinder along an axis, "x", "y" or "z"."""
-		shape = self._shaped.shape if self.is_shaped else None
+		shape = self._packing.shape
 		return isinstance(shape, packings.Cylinder) and abs(shape.axis["xyz".index(axis)]) > 1 - 1e-12
 
 	@property
@@ -423,6 +463,34 @@ class BondedSample:
 	def crack_area(self):
 		"""Cross-section of all broken bonds [m²]."""
 		return float(np.pi * (self.broken["radius"]**2).sum())
+
+
+def _as_noted(ids, centres, radii):
+	"""The packing of a loaded sample with the box and the shape that the scene says; and why these are unknown, or
+	None."""
+	note = scene_notes.sample(ids)
+	if note is None:
+		return packings.Packing(centres, radii), (
+			"the scene does not say it, as it was saved by an older version, or has spheres that "
+			"bonded.append has not made"
+		)
+	if note["count"] > 1:
+		return packings.Packing(centres, radii), f"the scene has {note['count']} samples, here taken as one"
+	shape = note["shape"] and shapes.from_record(note["shape"])
+	return packings.Packing(centres, radii, note["lower"], note["upper"], shape=shape), None
+
+
+def _filling(shape, centres, radii):
+	"""The packing of spheres that are said to fill a shape."""
+	packing = packings.Packing(centres, radii, shape=shape)
+	given, found = np.array([shape.lower, shape.upper]), np.array([packing.lower, packing.upper])
+	if abs(given - found)[:, :shape.dimension].max() > 2 * packing.radii.max():
+		raise ValueError(
+			f"from_scene: shape = {shape} lies from {shape.lower.tolist()} to {shape.upper.tolist()} m, "
+			f"the spheres from {packing.lower.tolist()} to {packing.upper.tolist()} m: they do not fill it"
+		)
+	packing.lower[:shape.dimension], packing.upper[:shape.dimension] = given[:, :shape.dimension]
+	return packing
 
 
 def broken_share(bonds, broken, ids):

@@ -13,13 +13,16 @@ import math
 import numpy as np
 
 from yade import (
-	BondedInteractionLoop, ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine,
-	utils
+	BondedInteractionLoop, Box, ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O,
+	RampedTranslationEngine, Wall, utils
 )
 
+from . import scene_notes
+from .arrays import BodyIds
 from .cells import require_faces
 
 _SKIN = 1.1  # distance of a centre from a face, in radii, up to which a strip holds it, as platens do
+GAUGES = ("above the left support", "at mid-span", "above the right support")  #: where the deflection is measured
 
 
 def three_point_bending(sample, span, velocity, ramp=0.0, strip=None, stiffness=None, notch=0.0):
@@ -89,7 +92,12 @@ def three_point_bending(sample, span, velocity, ramp=0.0, strip=None, stiffness=
 		(float(middle[0]), face + 0.5 * height, float(middle[2])), (0.5 * width, 0.5 * height, depth),
 		material=material, fixed=True
 	)
-	return Bending(sample, [*bodies, O.bodies.append(plate)], span, velocity, ramp, notch, width)
+	bodies.append(O.bodies.append(plate))
+	bending = Bending(sample, bodies, span, velocity, ramp, notch, width)
+	scene_notes.add(
+		"bending", bodies, span=span, notch=notch, strip=width, gauges=[ids.tolist() for ids in bending.gauges]
+	)
+	return bending
 
 
 def _beam(sample):
@@ -124,20 +132,41 @@ class Bending:
 	:func:`three_point_bending`. It serves wherever platens do. Forces are positive as loading has them."""
 
 	def __init__(self, sample, bodies, span, velocity, ramp, notch, strip):
-		self.sample, self.span, self.notch = sample, span, notch
-		#: body ids of the walls that carry the supports, and of the plate
-		self.left, self.right, self.load = bodies
-		self.strip = strip  #: width of supports and load [m]
-		_, self.height, self.depth = (float(s) for s in sample.upper - sample.lower)
+		self._measure(sample, bodies, span, notch, strip)
 		self.engines = [
 			RampedTranslationEngine(
 				ids=[self.load], translationAxis=(0, 1, 0), velocity=-velocity, rampTime=ramp
 			)
 		]
-		self._measured = self._near_the_axis()
+		self.gauges = self._near_the_axis()
+
+	@classmethod
+	def from_scene(cls, sample):
+		"""The bending in the current scene, for a scene that was loaded.
+
+		:param sample: as from :meth:`bonded.BondedSample.from_scene`
+		:raises RuntimeError: the scene has no bending that :func:`three_point_bending` made, or more than one
+		"""
+		note = scene_notes.only("bending", (Wall, Wall, Box))
+		self = cls.__new__(cls)
+		self._measure(sample, note["bodies"], note["span"], note["notch"], note["strip"])
+		self.engines = [
+			e for e in O.engines if isinstance(e, RampedTranslationEngine) and list(e.ids) == [self.load]
+		]
+		self.gauges = [BodyIds(ids) for ids in note["gauges"]]
+		return self
+
+	def _measure(self, sample, bodies, span, notch, strip):
+		self.sample, self.span, self.notch = sample, span, notch
+		#: body ids of the walls that carry the supports, and of the plate
+		self.left, self.right, self.load = bodies
+		self.strip = strip  #: width of supports and load [m]
+		_, self.height, self.depth = (float(s) for s in sample.upper - sample.lower)
+		#: ids of the spheres whose mean way is measured, see :data:`GAUGES`
+		self.gauges = None
 
 	def _near_the_axis(self):
-		"""Rows of spheres near the neutral axis above the left support, at mid-span,
+		"""Ids of spheres near the neutral axis above the left support, at mid-span,
 		above the right support."""
 		centres = self.sample.positions
 		middle = 0.5 * (self.sample.lower + self.sample.upper)
@@ -206,12 +235,24 @@ class Bending:
 	@property
 	def deflection(self):
 		"""Of the neutral axis at mid-span against that above the supports, downwards [m], so that what supports
-		and load press into the beam does not enter, as a yoke measures it (ASTM C1609)."""
-		left, mid, right = (
-			float(BondedInteractionLoop.sphereArray(ids, "displacement")[:, 1].mean())
-			for ids in map(BondedInteractionLoop.existing, self._measured)
-		)
+		and load press into the beam does not enter, as a yoke measures it (ASTM C1609).
+
+		:raises RuntimeError: all spheres of one of these three gauges have been erased
+		"""
+		left, mid, right = (self._sinking(*gauge) for gauge in zip(GAUGES, self.gauges))
 		return 0.5 * (left + right) - mid
+
+	@staticmethod
+	def _sinking(place, ids):
+		"""Mean displacement along y of the spheres of a gauge [m]; those that were erased do not count."""
+		there = BondedInteractionLoop.existing(ids)
+		if len(there) == 0:
+			named = ", ".join(f"#{i}" for i in ids[:5]) + (" …" if len(ids) > 5 else "")
+			raise RuntimeError(
+				f"Bending: the gauge {place}, near the neutral axis, has lost all of its {len(ids)} "
+				f"spheres ({named}), which were erased: there is no deflection to measure"
+			)
+		return float(BondedInteractionLoop.sphereArray(there, "displacement")[:, 1].mean())
 
 	@property
 	def strain(self):

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from yade import Body, ElasticWallMat, O, Quaternion, RoundPlaten, Vector3
+from yade import Body, ElasticWallMat, O, Quaternion, RampedTranslationEngine, RoundPlaten, Vector3
 
 from .bonded_loads import Platens, platens
 from .cells import require_faces
@@ -72,6 +72,28 @@ def brazilian(sample, velocity, jaws="curved", ramp=0.0, stiffness=100e9, both=T
 class Jaws(Platens):
 	"""Two curved jaws on a disc: what they do and what they feel; see :func:`brazilian`.
 	Compression is positive."""
+
+	@classmethod
+	def from_scene(cls, sample):
+		"""The curved jaws in the current scene, for a scene that was loaded; flat ones are
+		:class:`bonded_loads.Platens` of an area π D L/2.
+
+		:param sample: as from :meth:`bonded.BondedSample.from_scene`
+		:raises RuntimeError: the scene has not two concave round platens
+		"""
+		jaws = [b for b in O.bodies if b and isinstance(b.shape, RoundPlaten) and b.shape.concave]
+		if len(jaws) != 2:
+			raise RuntimeError(f"the scene has {len(jaws)} concave RoundPlatens, where curved jaws are two")
+		# the axis of the lower one is above that of the upper one, as both are less curved than the disc
+		top, bottom = (jaw.id for jaw in sorted(jaws, key=lambda jaw: jaw.state.refPos[1]))
+		diameter, _, length = (float(s) for s in sample.upper - sample.lower)
+		self = cls.__new__(cls)
+		self._measure(sample, bottom, top, math.pi / 2 * diameter * length, "y")
+		self.engines = [
+			e for i in (top, bottom) for e in O.engines
+			if isinstance(e, RampedTranslationEngine) and list(e.ids) == [i]
+		]
+		return self
 
 	def _measure(self, sample, bottom, top, area, axis):
 		self.sample, self.axis = sample, axis

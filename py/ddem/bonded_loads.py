@@ -112,10 +112,11 @@ class Platens:
 		"""The platens on a sample of the current scene, for a scene that was loaded.
 
 		:param sample: as from :meth:`bonded.BondedSample.from_scene`
-		:param area: of the loaded face [m²], to be given again where it was given, or where the packing said
-			its shape (a scene does not save it); None: that of the box around the spheres at the start.
+		:param area: of the loaded face [m²], to be given again where it was given; None: that of the sample's
+			face, :meth:`bonded.BondedSample.face`
 		:param axis: of loading, "x", "y" or "z"
 		:raises RuntimeError: the scene has not two Walls of ElasticWallMat across that axis
+		:raises ValueError: no area, and a sample whose shape the scene does not say
 		"""
 		_check_area(sample, area, axis)
 		walls = [
@@ -302,8 +303,8 @@ def triaxial(sample, pressure, strain, duration, ramp=1e-4, velocity=1.0, stiffn
 	:param strain: of the platens at the end, from the start [-]
 	:param duration: in which it is reached, after the *ramp* of the pressure [s]
 	:param ramp, velocity, stiffness: as for :func:`confine`
-	:param sides: "walls", rigid ones on a prism (:func:`confine`), or "jacket", a flexible one on any convex
-		specimen (:func:`jacket.jacket`)
+	:param sides: "walls", rigid ones on a prism (:func:`confine`), or "jacket", a flexible one, also
+		on a cylinder or another convex specimen of one cross-section (:func:`jacket.jacket`)
 	:returns: :class:`ServoPlatens` along y with the walls (:class:`Confinement`) or the jacket
 		(:class:`jacket.Jacket`) as ``confinement``
 	:raises ValueError: numbers out of range. Nothing is appended then.

@@ -13,9 +13,11 @@ import math
 import numpy as np
 
 from yade import (
-	ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine, ServoWall, utils
+	Box, ElasticWallMat, Ip2_ElasticWallMat_BondedMat_ElasticWallPhys, O, RampedTranslationEngine, ServoWall, Wall,
+	utils
 )
 
+from . import scene_notes
 from .cells import require_faces
 
 # dashpot of the normal load, of that which lets no wave come back; against the whole of it a sample of rock that rises
@@ -95,7 +97,11 @@ def direct_shear(
 		ids=halves[0], translationAxis=(1, 0, 0), velocity=velocity, rampTime=ramp,
 		startTime=O.time + 1.2 * normal_ramp
 	)
-	return DirectShear(sample, *halves, normal, drive, normal_stress, gap, 1.2 * normal_ramp)
+	begins = 1.2 * normal_ramp
+	scene_notes.add(
+		"direct shear", [*halves[0], *halves[1]], normal_target=normal_stress, gap=gap, begins=begins
+	)
+	return DirectShear(sample, *halves, normal, drive, normal_stress, gap, begins)
 
 
 def _half(sample, up, gap, material, spheres):
@@ -133,6 +139,27 @@ class DirectShear:
 		self.engines = [normal, drive]
 		self.length, self.height, depth = (float(s) for s in sample.upper - sample.lower)
 		self.area = self.length * depth  #: of the plane of shear at the start [m²]
+
+	@classmethod
+	def from_scene(cls, sample):
+		"""The shear box in the current scene, for a scene that was loaded.
+
+		:param sample: as from :meth:`bonded.BondedSample.from_scene`
+		:raises RuntimeError: the scene has no shear box that :func:`direct_shear` made, or more than one, or
+			O.engines not what moves it
+		"""
+		note = scene_notes.only("direct shear", 2 * (Wall, Box, Box))
+		lower, upper = note["bodies"][:3], note["bodies"][3:]
+		found = []
+		for kind, bodies in ((ServoWall, upper[:1]), (RampedTranslationEngine, lower)):
+			engines = [e for e in O.engines if isinstance(e, kind) and list(e.ids) == bodies]
+			if len(engines) != 1:
+				raise RuntimeError(
+					f"O.engines has {len(engines)} {kind.__name__} of the bodies {bodies}, where a "
+					"shear box has one"
+				)
+			found += engines
+		return cls(sample, lower, upper, *found, note["normal_target"], note["gap"], note["begins"])
 
 	@property
 	def outlines(self):

@@ -14,11 +14,15 @@ from .cells import require_faces
 
 _AXES = "xyz"
 _CORNERS = 64  # of the polygon around each sphere's outline
+# what a prism on the outline may have of the volume of the shape: it is below 1 where the sides are parallel
+_LARGER = 1.05
+# and that on the centres of their hull: 1.13 in a prism of a hundred spheres, 1.25 in a disc along a diameter
+_LARGER_HULL = 1.2
 _PARTS = 6  # of the distance between nodes, to which the side is split among spheres
 
 
 def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
-	"""A flexible jacket around the sides of a cylinder, a prism or another convex specimen,
+	"""A flexible jacket around the sides of a cylinder, a prism or another convex specimen of one cross-section,
 	whose ends platens cover::
 
 		press = ddem.bonded.servo(sample, [("stress", 10e6, 1e-4), ("strain", 0.01, 2e-3)], velocity=1.0)
@@ -38,7 +42,9 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 	:param resolution: distance of the membrane's nodes [m]. None: 1.5 mean radii of the spheres.
 	:returns: :class:`Jacket`; hand it to :func:`bonded.engines`.
 	:raises ValueError: pressure or ramp negative or not finite, an unknown axis, a layer, a resolution that is not
-		positive or leaves fewer than six nodes around the sample
+		positive or leaves fewer than six nodes around the sample, sides that are not parallel to the axis:
+		a prism on the outline larger than the shape by more than 5 %, or, where the packing says no shape and
+		spheres are the only measure, that of the centres larger than their convex hull by more than 20 %
 
 	Limits: see :yref:`JacketPressure`. The surface layer of a packing has fewer bonds and is softer than the rest,
 	and a jacket does not spread its load as a rigid wall does.
@@ -58,6 +64,7 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 	if np.ptp(sample.positions, axis=0)[across].min() < 1e-9 * radii.max():
 		raise ValueError(f"jacket: the spheres are one layer along {axis}: there is no side to go around")
 	outline = _outline(sample.positions[:, across], radii, size)
+	_check_sides(sample, outline, across, number)
 	rows = max(1, math.ceil((sample.upper - sample.lower)[number] / size)) + 1
 	heights = np.linspace(sample.lower[number], sample.upper[number], rows)
 	nodes = np.empty((rows, len(outline), 3))
@@ -83,6 +90,29 @@ def jacket(sample, pressure, ramp=1e-4, axis="y", resolution=None):
 			normals=[Vector3(*n) for n in np.cross(b - a, c - a).tolist()]
 		)
 	)
+
+
+def _check_sides(sample, outline, across, number):
+	"""The membrane must lie on the sides, not span across what is missing beside a prism."""
+	from scipy.spatial import ConvexHull, QhullError
+	if sample.is_shaped:
+		what, limit = "volume of the sample", _LARGER
+		found = ConvexHull(outline).volume * float((sample.upper - sample.lower)[number]) / sample.volume
+	else:
+		what, limit, centres = "convex hull of the spheres' centres", _LARGER_HULL, sample.positions
+		height = np.ptp(centres[:, number])
+		if height < 1e-9 * sample.radii.max():
+			return  # one layer across the axis
+		try:
+			found = ConvexHull(centres[:, across]).volume * height / ConvexHull(centres).volume
+		except QhullError:
+			found = math.inf  # a layer at a slant
+	if found > limit:
+		raise ValueError(
+			f"jacket: a prism along {_AXES[number]} on the sample's outline has {found:.3g} times the "
+			f"{what}, where {limit} is the limit: its sides are not parallel to that axis; choose the "
+			"axis= along which it has one cross-section, or make it a prism or a cylinder"
+		)
 
 
 def _supports(outline, heights, across, number, centres, radii):

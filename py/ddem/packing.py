@@ -8,6 +8,7 @@ boxes of GenGeo's packer, unless told otherwise; the same algorithm, some fifty 
 documented with a seed are of GenGeo's packings.
 """
 import contextlib
+import copy
 import ctypes
 import hashlib
 import itertools
@@ -351,8 +352,13 @@ def notched(packing, depth, x=None, gap=None):
 		or 0.0025 of the largest radius where it has none.
 	:returns: :class:`Packing` with a list of bonds
 	:raises ValueError: a depth that is not positive or not below the height, a plane beside the packing, one that
-		no bond crosses
+		no bond crosses, a periodic packing
 	"""
+	if packing.cell is not None:
+		raise ValueError(
+			"notched: a periodic packing has no lower face to cut from, its cell goes on below it; "
+			"set packing.cell = None, or pack a box"
+		)
 	height, x = float(packing.size[1]), float(0.5 * (packing.lower + packing.upper)[0] if x is None else x)
 	if not 0 < depth < height:
 		raise ValueError(
@@ -374,7 +380,10 @@ def notched(packing, depth, x=None, gap=None):
 		raise ValueError(
 			f"notched: no bond crosses x = {x:.6g} m up to {depth} m above the lower face: nothing to cut"
 		)
-	return Packing(packing.centres, packing.radii, packing.lower, packing.upper, pairs[~cut], packing.shape)
+	whole, packing = packing, copy.copy(packing)
+	packing.centres, packing.radii = whole.centres.copy(), whole.radii.copy()
+	packing.bonds = pairs[~cut]
+	return packing
 
 
 def _kept(folder, size, rmin, rmax, seed, fails, generator):

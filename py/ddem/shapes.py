@@ -23,6 +23,18 @@ _SAME = 1e-9  # of lengths that differ by less than this share of the size of a 
 
 class _Shape:
 	dimension = 3
+	_numbers = ()  # parameters of the constructor, which are attributes, too
+
+	def as_record(self):
+		"""Kind and numbers as JSON takes them, of which :func:`from_record` makes the same shape again."""
+		values = {name: getattr(self, name) for name in self._numbers}
+		return {
+			"kind": type(self).__name__,
+			**{
+				name: value if np.isscalar(value) else value[..., :self.dimension].tolist()
+				for name, value in values.items()
+			}
+		}
 
 	def face(self, axis):
 		"""Smaller of the two flat faces across *axis* (0, 1 or 2), those that platens load [m²]; in the plane
@@ -80,6 +92,8 @@ class _Polytope(_Shape):
 class Box(_Polytope):
 	"""A box along the axes."""
 
+	_numbers = ("lower", "upper")
+
 	def __init__(self, lower, upper):
 		"""
 		:param lower, upper: corners (3,) [m]
@@ -107,6 +121,8 @@ class Box(_Polytope):
 
 class Polyhedron(_Polytope):
 	"""A convex polyhedron."""
+
+	_numbers = ("corners", )
 
 	def __init__(self, corners):
 		"""
@@ -156,6 +172,8 @@ class Polyhedron(_Polytope):
 class Cylinder(_Shape):
 	"""A cylinder between two flat ends."""
 
+	_numbers = ("bottom", "top", "radius")
+
 	def __init__(self, bottom, top, radius):
 		"""
 		:param bottom, top: centres of its ends (3,) [m]
@@ -192,6 +210,8 @@ class Cylinder(_Shape):
 class Ball(_Shape):
 	"""A ball."""
 
+	_numbers = ("centre", "radius")
+
 	def __init__(self, centre, radius):
 		"""
 		:param centre: (3,) [m]
@@ -221,7 +241,14 @@ def flattened_disc(diameter, length, flat=math.radians(30)):
 
 	:param diameter, length: [m]
 	:param flat: angle that each flat end takes [rad]
+	:raises ValueError: a diameter or length that is not positive and finite, an angle that is not between 0 and π/2
 	"""
+	for name, value in (("diameter", diameter), ("length", length)):
+		if not (value > 0 and math.isfinite(value)):
+			raise ValueError(f"flattened_disc: {name} = {value} m must be positive and finite")
+	if not 0 < flat < math.pi / 2:
+		degrees = f"; degrees? Then math.radians({flat})" if math.pi / 2 <= flat < 90 else ""
+		raise ValueError(f"flattened_disc: flat = {flat} rad must lie between 0 and π/2{degrees}")
 	half = 0.5 * flat
 	around = [(math.sin(a), math.cos(a)) for a in (2 * math.pi * k / 72 for k in range(72))]
 	level = math.cos(half)
@@ -275,6 +302,7 @@ class Polygon(_Polytope):
 	"""A convex polygon in the plane z = 0."""
 
 	dimension = 2
+	_numbers = ("corners", )
 
 	def __init__(self, corners):
 		"""
@@ -285,6 +313,17 @@ class Polygon(_Polytope):
 
 	def __str__(self):
 		return f"the polygon of {len(self.corners)} corners"
+
+
+def from_record(record):
+	"""The shape of which ``as_record`` has made this.
+
+	:raises ValueError: another kind, or what its constructor refuses
+	"""
+	kinds = {kind.__name__: kind for kind in (Ball, Box, Cylinder, Disc, Polygon, Polyhedron, Rectangle)}
+	if record.get("kind") not in kinds:
+		raise ValueError(f"kind = '{record.get('kind')}' is no shape; use one of {', '.join(kinds)}")
+	return kinds[record["kind"]](**{name: value for name, value in record.items() if name != "kind"})
 
 
 def _hull(corners, d):

@@ -1,6 +1,7 @@
 # GPL v2 or later, see LICENSE.
 # Convex shapes, and what it means to fill one with spheres.
 import hashlib
+import json
 import math
 
 import numpy as np
@@ -169,3 +170,26 @@ def test_bad_shapes_are_refused(make, words):
 def test_bad_orders_are_refused(change, words):
 	with pytest.raises(ValueError, match=words):
 		packing.fill(**{**dict(shape=BOX, rmin=0.5, rmax=1), **change})
+
+
+@pytest.mark.parametrize("arguments, words", [
+	((0.02, 0.008, 30), r"flat = 30 rad must lie between 0 and π/2; degrees\? Then math.radians\(30\)"),
+	((0.02, 0.008, 0), "flat = 0 rad must lie between 0 and π/2$"), ((0.02, 0.008, math.nan), "flat = nan rad"),
+	((-0.02, 0.008), "diameter = -0.02 m must be positive"), ((0.02, 0), "length = 0 m must be positive"),
+])
+def test_a_flattened_disc_of_bad_numbers_is_refused(arguments, words):
+	with pytest.raises(ValueError, match=words):
+		shapes.flattened_disc(*arguments)
+
+
+@pytest.mark.parametrize("shape", [BOX, TILTED, BALL, TETRAHEDRON, RECTANGLE, DISC, TRAPEZIUM], ids=str)
+def test_a_shape_comes_back_from_its_record(shape):
+	"""Through JSON, to the last bit."""
+	again = shapes.from_record(json.loads(json.dumps(shape.as_record())))
+	assert type(again) is type(shape) and again.volume == shape.volume
+	assert (again.lower == shape.lower).all() and (again.upper == shape.upper).all()
+
+
+def test_a_record_of_another_kind_is_refused():
+	with pytest.raises(ValueError, match="kind = 'Torus' is no shape"):
+		shapes.from_record({"kind": "Torus"})

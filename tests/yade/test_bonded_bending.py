@@ -169,6 +169,34 @@ def test_no_bond_crosses_a_notch():
 			ddem.packing.notched(packing, *arguments)
 
 
+def test_a_notch_keeps_all_else_of_a_packing_and_its_own_stays():
+	packing = ddem.packing.fill(ddem.packing.Box((0, 0, 0), SIZE), 0.7e-3, 1.6e-3)
+	packing.note = "mine"
+	cut = ddem.packing.notched(packing, 0.004)
+	assert packing.bonds is None and cut.note == "mine" and cut.shape is packing.shape
+	assert np.array_equal(cut.lower, packing.lower) and cut.volume == packing.volume
+	cut.centres[0] += 1
+	assert packing.centres[0] != pytest.approx(cut.centres[0])
+
+
+def test_a_periodic_packing_has_no_face_to_notch():
+	"""Bonds across the border are not where the centres are."""
+	packing = ddem.packing.Packing([[1, 1, 1], [3, 1, 1]], [1, 1], cell=(4, 2, 2))
+	with pytest.raises(ValueError, match="a periodic packing has no lower face to cut from"):
+		ddem.packing.notched(packing, 0.5)
+
+
+def test_a_gauge_whose_spheres_are_gone_is_named():
+	"""The mean of no displacement is NaN, with which a loop runs on."""
+	bending = ddem.bonded.three_point_bending(row(), 2 * RADIUS * BONDS, 0.02, strip=0.5 * RADIUS)
+	O.engines = ddem.bonded.engines(bending)
+	assert bending.deflection == 0
+	O.bodies.erase(COUNT // 2)  # the sphere at mid-span
+	for quantity in ("deflection", "strain"):
+		with pytest.raises(RuntimeError, match=r"gauge at mid-span, .* has lost all of its 1 spheres \(#10\)"):
+			getattr(bending, quantity)
+
+
 @pytest.mark.parametrize("arguments, words", [
 	(dict(span=0), "span = 0 m must be positive"), (dict(velocity=-1), "velocity = -1 m/s must be positive"),
 	(dict(ramp=-1), "ramp = -1 s must not be negative"),
@@ -195,3 +223,29 @@ def test_only_beams_bend():
 	sample = ddem.bonded.append(ddem.packing.fill(core, 0.8e-3, 2e-3), "rock")
 	with pytest.raises(ValueError, match="the sample must be a prism"):
 		ddem.bonded.three_point_bending(sample, 0.02, 0.1)
+
+
+def test_a_loaded_scene_has_its_bending_again(tmp_path):
+	load, lines = ddem.bonded.three_point_bending(beam(notch=0.003), 0.028, 0.05, ramp=1e-5, notch=0.003), []
+	run(load, 5e-5)
+	O.save(str(tmp_path / "half.yade.gz"))
+	results = []
+	for again in (False, True):
+		if again:
+			O.reset()
+			O.load(str(tmp_path / "half.yade.gz"))
+			load = ddem.bonded.Bending.from_scene(ddem.bonded.BondedSample.from_scene())
+		O.run(100, True)
+		results.append(
+			[
+				getattr(load, name)
+				for name in ("deflection", "strain", "stress", "force_bottom", "area", "span", "strip")
+			]
+			+ [len(load.engines)]
+		)
+		lines.append(np.concatenate(load.outlines))
+	assert results[0] == results[1] and results[0][0] != 0
+	assert np.array_equal(*lines)
+	O.bodies.erase(load.load)
+	with pytest.raises(RuntimeError, match="the scene has 0 loads that it says are a bending, where one is asked"):
+		ddem.bonded.Bending.from_scene(load.sample)

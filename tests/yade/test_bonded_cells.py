@@ -136,6 +136,41 @@ def test_a_controller_brings_a_random_specimen_to_a_stress_and_crushes_it():
 	assert inside.all()
 
 
+def test_a_refused_packing_leaves_the_cell_as_it_was():
+	"""Also the sides that O.cell has where it is not in use."""
+	O.periodic = True
+	O.cell.hSize = Matrix3(3, 0.5, 0, 0, 4, 0, 0, 0, 5)
+	O.periodic = False
+	O.materials.append(BondedMat(label="rock"))
+	narrow = packing.Packing([[1, 1, 1], [3, 1, 1]], [1, 1], cell=(4, 2, 2))
+	with pytest.raises(ValueError):
+		bonded.append(narrow, "rock", scatter=lambda count: [-1.0] * count)
+	assert not O.periodic and len([b for b in O.bodies if b]) == 0
+	O.periodic = True
+	assert np.array(O.cell.hSize).ravel().tolist() == [3, 0.5, 0, 0, 4, 0, 0, 0, 5]
+	assert np.array(O.cell.refHSize).ravel().tolist() == [3, 0.5, 0, 0, 4, 0, 0, 0, 5]
+
+
+@pytest.mark.parametrize("told", ["by the packing", "by the scene"])
+def test_the_volume_of_a_sheared_cell_is_that_of_its_sides(told):
+	"""That of the box around it is larger: shear keeps the volume."""
+	sides = np.array([[6.0, 3.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]]) * RADIUS
+	places = SIDE * (np.array(list(itertools.product(range(3), repeat=3))) + 0.5)
+	spheres = packing.Packing(places, np.full(27, RADIUS), cell=sides if told == "by the packing" else None)
+	O.materials.append(BondedMat(label="rock"))
+	if told == "by the scene":
+		O.periodic = True
+		O.cell.hSize = Matrix3(*sides.ravel())
+	sample = bonded.append(spheres, "rock")
+	O.engines = bonded.engines()
+	again = bonded.BondedSample.from_scene()
+	for one in (sample, again):
+		assert one.volume == pytest.approx(216 * RADIUS**3)
+		assert one.lower == pytest.approx([0, 0, 0]) and one.upper == pytest.approx(
+			[9 * RADIUS, 6 * RADIUS, 6 * RADIUS]
+		)
+
+
 def test_a_saved_cell_goes_on(tmp_path):
 	"""Bonds keep the period that they cross; sums may differ in the last digits."""
 	sample = lattice(5)

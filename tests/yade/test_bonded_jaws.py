@@ -124,3 +124,30 @@ def test_curved_jaws_want_a_disc():
 	assert ddem.bonded.brazilian(flat, 0.1, "flat").area == pytest.approx(
 		math.pi / 2 * float((flat.upper - flat.lower)[0]) * 0.008
 	)
+
+
+def test_a_loaded_scene_has_its_jaws_again(tmp_path):
+	load, lines = press(disc(), "curved", 2e-5), []
+	O.save(str(tmp_path / "half.yade.gz"))
+	results = []
+	for again in (False, True):
+		if again:
+			O.reset()
+			O.load(str(tmp_path / "half.yade.gz"))
+			load = ddem.bonded.Jaws.from_scene(ddem.bonded.BondedSample.from_scene())
+		O.run(100, True)
+		results.append(
+			[
+				getattr(load, name)
+				for name in (
+					"stress", "strain", "force_top", "force_bottom", "area", "height", "bottom"
+				)
+			]
+			+ [len(load.engines)]
+		)
+		lines.append(np.concatenate(load.outlines))
+	assert results[0] == results[1] and results[0][0] != 0
+	assert np.array_equal(*lines)
+	O.bodies.erase(load.top)
+	with pytest.raises(RuntimeError, match="the scene has 1 concave RoundPlatens, where curved jaws are two"):
+		ddem.bonded.Jaws.from_scene(load.sample)

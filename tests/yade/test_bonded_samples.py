@@ -165,6 +165,68 @@ def test_a_loaded_scene_has_its_sample_and_platens_again(tmp_path):
 	assert len(loaded.engines) == 2 and again.initial_bonds == sample.initial_bonds
 
 
+def loaded(tmp_path):
+	"""What another process finds."""
+	O.engines = bonded.engines()
+	O.save(str(tmp_path / "sample.yade.gz"))
+	O.reset()
+	O.load(str(tmp_path / "sample.yade.gz"))
+
+
+def round_sample():
+	O.materials.append(BondedMat(label="rock"))
+	cylinder = packing.Cylinder((0, 0, 0), (0, 0.02, 0), 0.005)
+	return bonded.append(packing.fill(cylinder, 1e-3, 2e-3, fails=200), "rock"), cylinder
+
+
+def test_a_loaded_cylinder_is_a_cylinder(tmp_path):
+	"""Taken for its box, its stresses would be those of 4/π times its face."""
+	sample, cylinder = round_sample()
+	bonded.platens(sample, velocity=0.2)
+	loaded(tmp_path)
+	again = bonded.BondedSample.from_scene()
+	assert again.is_cylinder("y") and not again.is_prism and again.is_shaped
+	assert again.volume == cylinder.volume and (again.upper == cylinder.upper).all()
+	assert bonded.Platens.from_scene(again).area == pytest.approx(math.pi * 0.005**2, rel=1e-15)
+	O.bodies.erase(int(again.ids[3]))
+	assert bonded.BondedSample.from_scene().is_cylinder("y")
+
+
+def test_the_box_of_a_loaded_sample_is_that_of_its_packing(tmp_path):
+	O.materials.append(BondedMat(label="rock"))
+	bonded.append(packing.Packing([[0, 0, 0], [2, 0, 0]], [1, 1], (-2, -1, -1), (3, 1, 1)), "rock")
+	loaded(tmp_path)
+	again = bonded.BondedSample.from_scene()
+	assert again.is_prism and not again.is_shaped
+	assert (again.lower.tolist(), again.upper.tolist(), again.volume) == ([-2, -1, -1], [3, 1, 1], 20)
+
+
+@pytest.mark.parametrize("why", ["an older version", "2 samples"])
+def test_a_shape_that_nobody_knows_is_asked_for(tmp_path, why):
+	_, cylinder = round_sample()
+	if why == "2 samples":
+		bonded.append(packing.Packing([[0.1, 0, 0], [0.102, 0, 0]], [0.001, 0.001]), "rock")
+	else:
+		O.tags["ddem sample"] = "[]"  # as in a scene without the tag
+	loaded(tmp_path)
+	again = bonded.BondedSample.from_scene()
+	bodies = len(O.bodies)
+	for use in (
+		lambda: again.volume, lambda: again.is_prism, lambda: bonded.platens(again, velocity=1),
+		lambda: bonded.direct_shear(again, 1e6, 0.1),
+		lambda: bonded.three_point_bending(again, 0.01, 0.1)
+	):
+		with pytest.raises(ValueError, match=f"shape of this sample is unknown: the scene .*{why}"):
+			use()
+	assert len(O.bodies) == bodies
+	assert bonded.platens(again, velocity=1, area=1e-5).area == 1e-5
+	if why != "2 samples":
+		told = bonded.BondedSample.from_scene(shape=cylinder)
+		assert told.area == pytest.approx(math.pi * 0.005**2) and (told.lower == cylinder.lower).all()
+	with pytest.raises(ValueError, match="shape = the ball of radius 1.0 m .* they do not fill it"):
+		bonded.BondedSample.from_scene(shape=packing.Ball((0, 0, 0), 1))
+
+
 def test_a_crushing_scene_goes_on_with_the_same_bits_after_loading(tmp_path):
 	"""Contacts that broken bonds leave begin in the order of their breaking; after loading nobody knows that."""
 	sample, _ = specimen()
@@ -181,3 +243,12 @@ def test_a_crushing_scene_goes_on_with_the_same_bits_after_loading(tmp_path):
 		O.run(60, True)
 		again = bonded.BondedSample.from_scene()
 		assert (again.positions == places).all() and (again.spins == spins).all(), k
+
+
+def test_a_sample_that_takes_the_place_of_another_is_the_one_that_the_scene_knows(tmp_path):
+	"""As in a loop over packings that clears the bodies but does not reset the scene."""
+	round_sample()
+	O.bodies.clear()
+	bonded.append(packing.prism(0.01, 0.02, 0.01, rmin=1e-3, rmax=2e-3, seed=1, fails=200), "rock")
+	loaded(tmp_path)
+	assert bonded.BondedSample.from_scene().is_prism

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from yade import BondedMat, ElasticWallMat, O, ddem
+from yade import BondedMat, ElasticWallMat, O, ServoWall, ddem
 from yade.ddem.energy import EnergyBalance
 
 RADIUS = 0.5e-3  # of the lattice
@@ -139,3 +139,35 @@ def test_only_prisms_fit_into_the_box():
 	sample = ddem.bonded.append(ddem.packing.fill(core, 0.8e-3, 2e-3), "rock")
 	with pytest.raises(ValueError, match="the sample must be a prism"):
 		ddem.bonded.direct_shear(sample, 1e6, 0.1)
+
+
+def test_a_loaded_scene_has_its_shear_box_again(tmp_path):
+	O.materials.append(BondedMat(label="rock", young=50e9, cohesion=1e12))
+	sample = ddem.bonded.append(ddem.packing.fill(ddem.packing.Box((0, 0, 0), SIZE), 0.7e-3, 1.6e-3), "rock")
+	load, lines = ddem.bonded.direct_shear(sample, 5e6, 0.35, ramp=2e-5, normal_ramp=2e-5), []
+	O.engines = ddem.bonded.engines(load, 1e4)
+	O.dt = ddem.bonded.time_step(0.7)
+	O.run(200, True)
+	O.save(str(tmp_path / "half.yade.gz"))
+	results = []
+	for again in (False, True):
+		if again:
+			O.reset()
+			O.load(str(tmp_path / "half.yade.gz"))
+			load = ddem.bonded.DirectShear.from_scene(ddem.bonded.BondedSample.from_scene())
+		O.run(200, True)
+		results.append(
+			[
+				getattr(load, name)
+				for name in (
+					"stress", "normal_stress", "displacement", "dilation", "gap", "begins", "area"
+				)
+			]
+			+ [len(load.engines)]
+		)
+		lines.append(np.concatenate(load.outlines))
+	assert results[0] == results[1] and results[0][0] != 0
+	assert np.array_equal(*lines)
+	O.engines = [engine for engine in O.engines if not isinstance(engine, ServoWall)]
+	with pytest.raises(RuntimeError, match="O.engines has 0 ServoWall of the bodies"):
+		ddem.bonded.DirectShear.from_scene(load.sample)

@@ -336,3 +336,39 @@ def test_columns_that_do_not_fit_are_refused(change, words):
 	with pytest.raises(ValueError, match=words):
 		O.step()
 		O.step()
+
+
+@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("shape, axis", [
+	(ddem.packing.Ball((0, 0, 0), RADIUS), "y"), (ddem.packing.Cylinder((0, 0, 0), (LENGTH, 0, 0), RADIUS), "y"),
+	(ddem.packing.flattened_disc(0.02, 0.008), "y"),
+])
+def test_sides_that_are_not_parallel_to_the_axis_are_refused(shape, axis, told):
+	"""The prism on the outline has 3/2 of a ball, 4/π of a cylinder across. Where only spheres tell it, too."""
+	sample = filled(shape)
+	if not told:
+		sample = without_shape(sample)
+	with pytest.raises(
+		ValueError, match=r"on the sample's outline has 1\.[2-5]\d* times .* not parallel to that axis"
+	):
+		ddem.bonded.jacket(sample, PRESSURE, axis=axis)
+
+
+@pytest.mark.parametrize("told", [True, False])
+@pytest.mark.parametrize("shape, axis", [
+	(ddem.packing.Box((0, 0, 0), (0.01, 0.02, 0.01)), "y"), (ddem.packing.flattened_disc(0.02, 0.008), "z"),
+	(ddem.packing.Cylinder((0, 0, 0), (LENGTH, 0, 0), RADIUS), "x"),
+])
+def test_sides_that_are_parallel_to_the_axis_are_taken(shape, axis, told):
+	"""As coarse as samples are at all."""
+	sample = filled(shape, rmin=1e-3)
+	around = ddem.bonded.jacket(sample if told else without_shape(sample), PRESSURE, axis=axis)
+	assert 0.9 < around.volume / shape.volume < 1
+
+
+def without_shape(sample):
+	"""The same spheres as of a file, which says nothing of their shape."""
+	spheres = ddem.packing.Packing(sample.positions, sample.radii)
+	O.reset()
+	O.materials.append(BondedMat(label="rock"))
+	return ddem.bonded.append(spheres, "rock")

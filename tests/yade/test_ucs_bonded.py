@@ -466,6 +466,14 @@ def test_options_reach_the_model(job, monkeypatch):
 	(["--test", "torsion"], "--test: invalid choice: 'torsion'"),
 	(["--test", "triaxial"], "--pressure: it belongs to --test triaxial, which needs it"),
 	(["--pressure", "1e6"], "--pressure: it belongs to --test triaxial"),
+	(
+		["--test", "triaxial", "--pressure", "1e6", "--shape", "disc"],
+		"--shape: rigid walls enclose a prism; --confinement jacket takes cylinders, too"
+	),
+	(
+		["--test", "triaxial", "--pressure", "1e6", "--shape", "disc", "--confinement", "jacket"],
+		"--shape: a jacket goes around a prism or a cylinder, not a disc"
+	),
 	(["--test", "oedometer", "--shape", "cylinder"], "--shape: --test oedometer needs a prism"),
 	(["--test", "brazilian", "--shape", "prism"], "--shape: the Brazilian test splits a disc"),
 	(["--test", "bending", "--span", "0.05"], "--span: 0.05 m must be below the beam's length, 0.05 m"),

@@ -3,6 +3,8 @@
 break."""
 import math
 
+import numpy as np
+
 from yade import BondedMat, O, ParallelBondMat, SofteningBondMat
 
 from .. import bonded
@@ -35,9 +37,7 @@ def read_packing(options):
 		)
 	packing = packings.read(options.particles, options.bonds, options.length_unit)
 	if options.box:
-		return packings.Packing(
-			packing.centres, packing.radii, options.box[:3], options.box[3:], packing.bonds
-		)
+		packing.lower, packing.upper = np.array(options.box[:3], float), np.array(options.box[3:], float)
 	return packing
 
 

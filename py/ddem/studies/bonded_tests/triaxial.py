@@ -34,8 +34,8 @@ class Triaxial(BondedTest):
 			choices=("walls", "jacket"),
 			default=SUPPRESS,
 			help=(
-				"what keeps the pressure: rigid walls around a prism, or a flexible jacket (default: "
-				"walls)"
+				"what keeps the pressure: rigid walls around a prism, or a flexible jacket, also "
+				"around a cylinder (default: walls)"
 			),
 		)
 
@@ -43,7 +43,12 @@ class Triaxial(BondedTest):
 		if options.pressure is None:
 			refuse("argument --pressure: it belongs to --test triaxial, which needs it")
 		if options.confinement == "walls" and options.shape != "prism":
-			refuse("argument --shape: rigid walls enclose a prism; --confinement jacket takes others")
+			refuse(
+				"argument --shape: rigid walls enclose a prism; --confinement jacket takes cylinders, "
+				"too"
+			)
+		if options.shape not in ("prism", "cylinder"):
+			refuse(f"argument --shape: a jacket goes around a prism or a cylinder, not a {options.shape}")
 
 	def load(self, options, sample):
 		height = float(sample.upper[1] - sample.lower[1])
