@@ -78,6 +78,8 @@ def test_an_elastic_disc_has_the_stress_of_a_rigid_punch_at_its_centre(perform, 
 	# that the disc is no half plane, and triangles of a seventeenth of it: three per cent
 	assert ratio == pytest.approx(figures["centre_over_nominal"], rel=0.04)
 	assert figures["splitting_MPa"] > 0 and figures["angle_degree"] == 20
+	page = (folder / "report.html").read_text()
+	assert ("an arc of nodes that moves as one" in page) == (jaws == "curved")
 
 
 # ---- strengths that laws state ----
@@ -146,6 +148,7 @@ def test_each_law_and_each_test_is_in_the_help(job, monkeypatch, capsys):
 	said = " ".join(capsys.readouterr().out.split())
 	for name in (*TESTS, *LAWS):
 		assert name in said
+	assert "an arc of nodes that moves as one" in said
 	for option in ("--pressure PA", "--yield-stress PA", "--tensile-strength PA", "--angle DEGREES", "--span M"):
 		assert option in said
 
