@@ -80,7 +80,7 @@ class Brazilian(DeformableTest):
 	def motion(self, options):
 		return super().motion(options).replace("platen", "jaw")
 
-	def elastic_modulus(self, young, poisson):
+	def elastic_modulus(self, load, young, poisson):
 		return None
 
 	def title(self):
