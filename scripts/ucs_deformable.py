@@ -56,7 +56,7 @@ def main():
 	setup = time.perf_counter() - start
 	run = test.run(progress=options.progress)
 	run.setup, run.parameters = setup, deformable_test.sample_rows(options, load.sample, material, run.dt)
-	modulus = kind.elastic_modulus(material.young, material.poisson)
+	modulus = kind.elastic_modulus(load, material.young, material.poisson)
 	run.extra.update({"elastic_modulus_GPa": modulus and 1e-9 * modulus, **kind.figures(run, load)})
 	report = Report(
 		[run], options.out, kind.title(), settings=deformable_test.settings(options, load),

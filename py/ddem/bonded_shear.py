@@ -32,7 +32,7 @@ def direct_shear(
 	"""Put a prism into a shear box: a lower half that moves along x, an upper half that carries the normal load.
 
 	Each half has two smooth side plates and an end plate to which the outermost spheres are bonded, in shear as
-	well, as a specimen is cast into its box (ISRM 2014): it bears the moment of the two forces, which smooth plates
+	well, as a specimen is cast into its box: it bears the moment of the two forces, which smooth plates
 	could not. The front and the back of the box are smooth walls. The upper end plate keeps the normal force by
 	a servo and is free to rise; nothing else of the upper half moves.
 

@@ -25,7 +25,7 @@ def three_point_bending(block, span, velocity, ramp=0.0, strip=None):
 	:param velocity: of the load, downwards [m/s]
 	:param ramp: time over which it grows linearly from zero [s]
 	:param strip: width of the load along the beam [m]; None: a fifth of the height. Where no node lies there, the
-		closest is taken.
+		closest is taken. A strip that does not turn stiffens the beam, see :func:`plane_strain_deflection`.
 	:returns: :class:`Bending`; put its ``engines`` into O.engines before the DeformableEngine.
 	:raises ValueError: numbers out of range, a block that is no beam. Nothing is held then.
 	"""
@@ -70,6 +70,8 @@ class Bending:
 		away = np.abs(mesh.nodes[top, 0] - middle)
 		self._loaded = top[away <= max(0.5 * strip, away.min()) * (1 + 1e-9)]
 		places = middle + np.array([-0.5, 0.5]) * span
+		#: width of the load, as its nodes have it [m]; 0: one node
+		self.strip = float(np.ptp(mesh.nodes[self._loaded, 0]))
 		self._stands = bottom[[np.argmin(np.abs(mesh.nodes[bottom, 0] - x)) for x in places]]
 		# the nodes say where it really stands
 		self.span = float(np.diff(mesh.nodes[self._stands, 0])[0])
@@ -123,6 +125,10 @@ class Bending:
 def plane_strain_deflection(load, span, young, poisson, depth, height):
 	"""Deflection at mid-span of a simply supported elastic beam in plane strain under a load in its middle [m]:
 	P L³/(48 E' I) + P L/(4 κ G A), E' = E/(1−ν²), κ = 5/6 (Timoshenko 1921).
+
+	Limits: stresses about load and supports are not those of a beam. Triangles loaded at one node tend to 0.6 %
+	less where the span is eight heights, to 3 % less where it is four. A load of some width that does not turn
+	stiffens a beam further: 0.25 h wide by 2 % and 4 %.
 
 	:param load: P [N]
 	:param span: L [m]

@@ -6,7 +6,8 @@
 	O.engines = [ForceResetter(), *jaws.engines, DeformableEngine()]
 
 Jaws press along y. An elastic disc has the stresses
-:func:`pressed` at its centre, and those of :func:`hondros` under pressure. SI units, angles in degrees.
+:func:`disc_stress.pressed` at its centre, and those of :func:`disc_stress.hondros` under pressure.
+SI units, angles in degrees.
 """
 import math
 
@@ -23,7 +24,9 @@ def brazilian(block, diameter, angle, velocity, ramp=0.0, both=True):
 
 	Curved jaws and flat ends differ by the mesh alone, see :func:`brazilian_disc`: the nodes of an arc, or of
 	a flat, move down as one and are free across, as on smooth jaws;
-	the ones on the axis of the load are held there.
+	the ones on the axis of the load are held there. A curved jaw is no body: its arc neither grows nor opens
+	as the disc flattens, unlike that of :func:`bonded_jaws.brazilian`, where a disc meets a jaw of 1.5 times its
+	radius.
 
 	:param block: :class:`Block` of a disc
 	:param diameter: D [m]
@@ -105,32 +108,6 @@ class Jaws(Platens):
 	def splitting_stress(self):
 		"""Stress across the load at the centre [Pa], tension positive."""
 		return float(self.centre_stress[0])
-
-
-def hondros(angle):
-	"""Stresses at the centre of an elastic disc under uniform radial pressure p over two arcs, across and along the
-	load, over 2P/(πDt) [-], tension positive (Hondros 1959): (sin 2α − α)/sin α and −(sin 2α + α)/sin α, with the
-	force P = p D t sin α.
-
-	:param angle: of each arc, 2α [degree]
-	"""
-	half = math.radians(angle) / 2
-	return (math.sin(2 * half) - half) / math.sin(half), -(math.sin(2 * half) + half) / math.sin(half)
-
-
-def pressed(angle):
-	"""The same under smooth jaws that move as one: a rigid punch's force,
-	dP/dx = P/(π √(a² − x²)) with a = D/2 sin α.
-
-	A vertical force dP at the angle θ from the axis of the load gives dP cos θ (1 − 4 sin²θ) across and
-	−dP cos θ (3 − 4 sin²θ) along, each times 2/(πDt): its part along the border gives nothing at the centre
-	(Flamant's solution).
-
-	:param angle: of each arc, 2α [degree]
-	"""
-	turned = math.sin(math.radians(angle) / 2) * np.sin((np.arange(200) + 0.5) * math.pi / 200 - math.pi / 2)
-	share = np.sqrt(1 - turned**2)
-	return float((share * (1 - 4 * turned**2)).mean()), float(-(share * (3 - 4 * turned**2)).mean())
 
 
 def stress_at(block, place, reach):

@@ -301,3 +301,20 @@ def size_of_png(path):
 	with open(path, "rb") as file:
 		head = file.read(24)
 	return struct.unpack(">II", head[16:24])
+
+
+def test_what_has_not_failed_has_no_strength():
+	"""A straight line to its last record, 60 MPa: None in the summary, a dash in the table,
+	unless it has yielded."""
+	run = deformable_run()
+	rising = Series(**run.series.units)
+	for row in range(101):
+		rising.append(**{**{name: run.series[name][row] for name in run.series.units}, "damage": 0.0})
+	run = dataclasses.replace(run, series=rising)
+	summary = run.summary()
+	assert not run.has_strength and summary["ucs_MPa"] is None
+	assert summary["young_GPa"] == pytest.approx(30) and summary["strain_at_peak"] == pytest.approx(0.002)
+	report = Report([run], "out", "t")
+	assert ("strength (UCS)", "MPa", ["–"]) in report.table_rows()
+	assert "so that this is no strength" in report.html({})
+	assert dataclasses.replace(run, yielded=True).summary()["ucs_MPa"] == pytest.approx(60)

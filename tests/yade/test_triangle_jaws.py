@@ -7,7 +7,8 @@ import pytest
 from deformable_samples import elastic
 
 from yade import DeformableEngine, ForceResetter, O, ddem
-from yade.ddem.triangle_jaws import hondros, pressed, stress_at
+from yade.ddem.disc_stress import hondros, pressed
+from yade.ddem.triangle_jaws import stress_at
 
 D, THICKNESS = 0.05, 0.02
 
@@ -16,16 +17,6 @@ def rested(block, engines):
 	O.engines = [ForceResetter(), *engines, DeformableEngine(rotation="none")]
 	O.dt = ddem.time_step(0.8)
 	return block
-
-
-def test_hondros_tends_to_line_loads():
-	"""Hertz: 2P/(πDt) across, three times as much along."""
-	assert hondros(1e-3) == pytest.approx((1, -3), abs=1e-6)
-	assert pressed(1e-3) == pytest.approx((1, -3), abs=1e-6)
-	# to the second order in α: 1 - 7/6 α² and 1 - 9/4 α²
-	alpha = math.radians(5)
-	assert hondros(10)[0] == pytest.approx(1 - 7 / 6 * alpha**2, abs=alpha**4)
-	assert pressed(10)[0] == pytest.approx(1 - 9 / 4 * alpha**2, abs=2 * alpha**4)
 
 
 def test_uniform_pressure_on_two_arcs_makes_the_stress_of_hondros():

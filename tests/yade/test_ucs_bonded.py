@@ -18,6 +18,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from yade.ddem import broken_bonds, packing
+from yade.ddem.disc_stress import hondros, pressed
 from yade.ddem.series import Series
 from yade.ddem.studies.uniaxial import CompressionTest
 
@@ -316,10 +317,14 @@ def test_a_brazilian_disc_splits(perform):
 		"20e6",
 		"--radii", "0.8e-3", "2e-3", "--velocity", "0.25", *BARE
 	]
-	split, _ = perform("--test", "brazilian", "--size", "0.03", "0.03", "0.008", *strong)
+	split, folder = perform("--test", "brazilian", "--size", "0.03", "0.03", "0.008", *strong)
+	page = (folder / "report.html").read_text(encoding="utf-8")
 	pulled, _ = perform("--test", "tension", "--size", "0.015", "0.03", "0.008", "--generator", "fill", *strong)
 	assert 0.8 < split["splitting_MPa"] / pulled["tensile_MPa"] < 2.5
 	assert split["broken_in_tension"] > 2 * split["broken_in_shear"]
+	# of the flat ends that the sample has, not of others
+	assert split["angle_degree"] == pytest.approx(30) and split["centre_over_nominal"] == pressed(30)[0]
+	assert "30° wide" in page and f"{hondros(30)[0]:.3f}" in page and "0.96" not in page
 
 
 STRONG = [
@@ -333,7 +338,8 @@ def test_jaws_of_the_brazilian_test(perform):
 	strengths = {}
 	for jaws, words in (("curved", "of 18 mm radius"), ("flat", "on a round disc")):
 		figures, folder = perform(
-			"--test", "brazilian", "--jaws", jaws, "--size", "0.024", "0.02", "0.008", "--velocity", "0.25",
+			"--test", "brazilian", "--jaws", jaws, "--size", "0.024", "0.024", "0.008", "--velocity",
+			"0.25",
 			*STRONG,
 			*BARE
 		)
@@ -372,6 +378,8 @@ def test_bending_and_its_notch(perform):
 	):
 		assert text in page
 	assert "UCS" not in page and "Uniaxial" not in page
+	wide, _ = perform(*quick, "--strip", "0.003")
+	assert wide["strip_m"] == 0.003 > whole["strip_m"] > 0
 	notched, folder = perform(*quick, "--notch", "0.003")
 	assert notched["bonds"] < whole["bonds"] and "flexural_modulus_GPa" not in notched
 	assert Series.read(folder / "rigid.csv")["force_top"].max() < 0.85 * series["force_top"].max()
@@ -475,6 +483,10 @@ def test_options_reach_the_model(job, monkeypatch):
 		"--shape: a jacket goes around a prism or a cylinder, not a disc"
 	),
 	(["--test", "oedometer", "--shape", "cylinder"], "--shape: --test oedometer needs a prism"),
+	(["--test", "brazilian", "--size", "0.03", "0.02", "0.01"], "--size: a disc of 0.03 m has that height as well"),
+	(["--shape", "disc", "--size", "0.03", "0.02", "0.01"], "give W and H the same"),
+	(["--test", "bending", "--strip", "1e-9"], "widen the strip"),
+	(["--strip", "1e-3"], "--strip: it belongs to --test bending"),
 	(["--test", "brazilian", "--shape", "prism"], "--shape: the Brazilian test splits a disc"),
 	(["--test", "bending", "--span", "0.05"], "--span: 0.05 m must be below the beam's length, 0.05 m"),
 	(["--test", "bending", "--span", "0.049"], "do not lie below a beam 0.05 m long"),

@@ -13,6 +13,7 @@ from yade.ddem.materialpoint import MaterialPoint, concrete
 from yade.ddem.series import Series
 from yade.ddem.studies.deformable_laws import LAWS
 from yade.ddem.studies.deformable_tests import TESTS
+from yade.ddem.triangle_bending import plane_strain_deflection
 
 BARE = ["--no-pictures", "--no-vtk", "--no-progress"]
 ELASTIC = ["--law", "elastic", "--young", 30e9, "--poisson", 0.2, "--strain", 2e-4, "--rows", 200]
@@ -44,8 +45,8 @@ def perform(job, monkeypatch, tmp_path):
 		# uniform fields, which any mesh has; what is left are waves of the start
 		("compression", ["--ends", "smooth"], 0.005), ("tension", [], 0.005), ("oedometer", [], 0.005),
 		("biaxial", ["--pressure", 1e5], 0.01), ("shear", [], 0.005),
-		# linear triangles, eight over the height of a slender beam
-		("bending", ["--size", 0.4, 0.05, 0.05, "--span", 0.36, "--edge", 0.00625, "--mesh", "crossed"], 0.03)
+		# the beam that the script has: ten linear triangles over its height, a span of eight heights
+		("bending", [], 0.025)
 	]
 )
 def test_an_elastic_sample_has_the_slope_that_hooke_gives(perform, test, options, error):
@@ -57,11 +58,16 @@ def test_an_elastic_sample_has_the_slope_that_hooke_gives(perform, test, options
 		"oedometer": 30e9 * 0.8 / (1.2 * 0.6), "shear": 30e9 / 2.4, "bending": None
 	}[test]
 	expected = figures["elastic_modulus_GPa"]
+	if test == "bending":
+		assert figures["span_m"] == pytest.approx(0.4, rel=0.02) and figures["strip_m"] == 0
 	if closed:
 		assert expected == pytest.approx(1e-9 * closed)
 	name = TESTS[test].record.wording.modulus
 	assert figures[name] == pytest.approx(expected, rel=error)
 	assert figures["energy_error"] < 1e-6 and figures["damage_at_end"] == 0
+	# what cannot fail has no strength
+	assert figures[TESTS[test].record.wording.strength] is None and figures.get("deviator_MPa") is None
+	assert "so that this is no strength" in (folder / "report.html").read_text()
 	series = Series.read(folder / "deformable.csv")
 	assert series["strain"].max() == pytest.approx(2e-4, rel=0.15) and series["stress"].max() > 0
 
@@ -77,7 +83,9 @@ def test_an_elastic_disc_has_the_stress_of_a_rigid_punch_at_its_centre(perform, 
 	assert figures["centre_over_nominal"] == pytest.approx(1 - 9 / 4 * math.radians(10)**2, abs=2e-3)
 	# that the disc is no half plane, and triangles of a seventeenth of it: three per cent
 	assert ratio == pytest.approx(figures["centre_over_nominal"], rel=0.04)
-	assert figures["splitting_MPa"] > 0 and figures["angle_degree"] == 20
+	assert figures["splitting_MPa"] is None and figures["angle_degree"] == 20
+	page = (folder / "report.html").read_text()
+	assert ("an arc of nodes that moves as one" in page) == (jaws == "curved")
 
 
 # ---- strengths that laws state ----
@@ -113,6 +121,7 @@ def test_a_metal_yields_at_the_stress_of_plane_strain(perform):
 		"--strain", 0.02, "--stop", 0, "--mesh", "crossed", "--rows", 200, *BARE
 	)
 	assert figures["stress_at_end_MPa"] == pytest.approx(300 * 2 / math.sqrt(3), rel=0.03)
+	assert figures["ucs_MPa"] >= figures["stress_at_end_MPa"]  # it breaks nowhere, but has yielded
 
 
 def test_pressure_makes_concrete_stronger(perform):
@@ -140,12 +149,48 @@ def test_everything_that_is_written(perform):
 	assert figures["test"] == "tension" and figures["particles"] > 50
 
 
+def test_what_a_law_is_set_to_reaches_the_material_and_the_report(perform):
+	"""Without rate dependence the law is a smaller one; numbers and switches are shown as they were given."""
+	quick = ["--edge", 0.025, "--velocity", 1, "--strain", 2e-3, "--rows", 100, "--spread", 0, *BARE]
+	figures, folder = perform(*quick, "--set", "damageExponent=1.5", "--set", "rateDependence=off")
+	assert figures["parameters"]["damageExponent"] == "1.5" and figures["parameters"]["rateDependence"] == "off"
+	changed = Series.read(folder / "deformable.csv")["stress"].max()
+	usual, folder = perform(*quick)
+	assert "rateDependence" not in usual["parameters"]
+	assert changed < 0.99 * Series.read(folder / "deformable.csv")["stress"].max()
+
+
+def test_two_beams_have_each_its_own_slope(job, monkeypatch, tmp_path):
+	"""The slope of an elastic beam is that of the load at hand, with the span that its nodes have, and not that of
+	the beam made last."""
+	beams = []
+	for span, edge in ((0.36, 0.0125), (0.30, 0.0121)):
+		monkeypatch.setattr(
+			"sys.argv", [
+				"scripts/ucs_deformable.py", "--test", "bending", "--law", "elastic", "--size", "0.4",
+				"0.05",
+				"0.05", "--span", str(span), "--edge", str(edge), "--out", str(tmp_path)
+			]
+		)
+		options, _ = job.read_options()
+		load, _, material = job.make(options)
+		# P over δ of the beam as it stands
+		depth, height = load.section
+		deflection = plane_strain_deflection(1, load.span, material.young, material.poisson, depth, height)
+		beams.append((load, material, load.span**3 / (4 * depth * height**3 * deflection)))
+	assert beams[1][0].span != 0.30  # no node lies there
+	for load, material, slope in beams:
+		said = TESTS["bending"].elastic_modulus(load, material.young, material.poisson)
+		assert said == pytest.approx(slope, rel=1e-12)
+
+
 def test_each_law_and_each_test_is_in_the_help(job, monkeypatch, capsys):
 	with pytest.raises(SystemExit):
 		script_modules.run(job, monkeypatch, "--help")
 	said = " ".join(capsys.readouterr().out.split())
 	for name in (*TESTS, *LAWS):
 		assert name in said
+	assert "an arc of nodes that moves as one" in said
 	for option in ("--pressure PA", "--yield-stress PA", "--tensile-strength PA", "--angle DEGREES", "--span M"):
 		assert option in said
 
@@ -159,8 +204,19 @@ def test_each_law_and_each_test_is_in_the_help(job, monkeypatch, capsys):
 		(["--law", "elastic", "--fracture-energy", "80"], "--fracture-energy: it belongs to --law"),
 		(["--law", "elastic", "--spread", "0.5"], "--law elastic has no fracture energy"),
 		(["--set", "colour=1"], "ConcreteDamageMat has no number 'colour'; it has"),
+		(["--set", "damageExponnt=1"], "Did you mean damageExponent?"),
+		(["--set", "id=3"], "has no number 'id'"), (["--set", "label=1"], "has no number 'label'"),
+		(["--set", "young=1e9"], "'young' has an option of its own, --young"),
+		(["--set", "fractureEnergy=9"], "an option of its own, --fracture-energy"),
+		(["--set", "damageExponent=on"], "'damageExponent' of ConcreteDamageMat is a number, not on"),
+		(["--set", "rateDependence=0"], "'rateDependence' of ConcreteDamageMat is on or off, not 0"),
+		(["--set", "damageExponent=many"], "must be NAME=NUMBER"),
+		(["--set", "damageExponent"], "must be NAME=NUMBER"),
+		(["--set", "damageExponent=nan"], "must be NAME=NUMBER"),
 		(["--set", "damageExponent=-1"], "damageExponent"), (["--poisson", "0.6"], "poisson"),
 		(["--test", "bending", "--size", "0.1", "0.1", "0.1"], "is no beam"),
+		(["--test", "bending", "--strip", "0.4"], "--strip: 0.4 m must be below the span, 0.4 m"),
+		(["--strip", "0.01"], "--strip: it belongs to --test bending"),
 		(["--test", "bending", "--span", "1"], "--span: 1 m must not exceed"),
 		(["--test", "shear", "--drive", "top"], "--test shear has no two platens"),
 		(["--test", "brazilian", "--size", "0.05", "0.06", "0.02"], "give W and H the same"),

@@ -1,6 +1,6 @@
 # GPL v2 or later, see LICENSE.
 """What a report says about a test of deformable triangles: rows about sample and test, and sentences."""
-from ..studies.deformable_laws import LAWS
+from ..studies.deformable_laws import LAWS, said
 from ..studies.deformable_tests import TESTS
 from . import parameter_tables
 
@@ -37,7 +37,7 @@ def sample_rows(options, block, material, dt):
 		value = getattr(material, parameter.attribute)
 		made.append((parameter.attribute, f"{value:g} {parameter.shown_unit}", parameter.help))
 	for name, value in options.set:
-		made.append((name, f"{value:g}", f"attribute of {type(material).__name__}"))
+		made.append((name, said(value), f"attribute of {type(material).__name__}"))
 	if options.spread:
 		made.append(
 			(
@@ -82,17 +82,17 @@ def notes(options, load, material, run):
 	kind = TESTS[options.test]
 	peak = run.strength.peak
 	top, bottom = (float(run.series[name][peak]) for name in ("force_top", "force_bottom"))
-	said = [
+	written = [
 		(
 			f"Rate. At the peak the forces on both sides are {1e-3 * top:.3g} and {1e-3 * bottom:.3g} kN, "
 			f"{100 * abs(top - bottom) / max(abs(top + bottom) / 2, 1e-300):.2g} % apart. Where they "
 			"differ much, the test is not quasi-static: lower --velocity."
 		)
 	]
-	modulus = kind.elastic_modulus(material.young, material.poisson)
+	modulus = kind.elastic_modulus(load, material.young, material.poisson)
 	if modulus:
-		said.append(
+		written.append(
 			f"Elasticity. An elastic sample of this material has the slope {modulus / 1e9:.4g} GPa, "
 			f"{kind.modulus}, in this test."
 		)
-	return said + kind.notes(options, run)
+	return written + kind.notes(options, run)

@@ -29,7 +29,11 @@ def stress_strain(runs):
 			strain, stress, measures = 100 * run.series["strain"], run.series["stress"] / 1e6, run.strength
 			colour = MODEL_COLOURS[run.model]
 			ax.plot(strain, stress, color=colour, label=run.title)
-			ax.plot(100 * measures.strain_at_peak, measures.ucs / 1e6, "o", color=colour, markersize=3.5)
+			if run.has_strength:
+				ax.plot(
+					100 * measures.strain_at_peak, measures.ucs / 1e6, "o", color=colour,
+					markersize=3.5
+				)
 			if np.isfinite(measures.young) and run.wording.modulus:
 				ends = np.array([0.0, 0.9 * measures.ucs])
 				ax.plot(
@@ -39,7 +43,8 @@ def stress_strain(runs):
 		words = runs[0].wording
 		if words.modulus:
 			ax.plot([], [], "--", color="0.4", linewidth=0.6, label="fit between 20 % and 60 %")
-		ax.plot([], [], "o", color="0.4", markersize=3.5, label=f"peak ({words.peak})")
+		if any(run.has_strength for run in runs):
+			ax.plot([], [], "o", color="0.4", markersize=3.5, label=f"peak ({words.peak})")
 		_label(ax, f"{words.strain} [%]", f"{words.stress} [MPa]")
 		ax.set_xlim(0, 102 * max(run.series["strain"].max() for run in runs))
 		ax.set_ylim(bottom=min(0.0, min(1.05 * run.series["stress"].min() / 1e6 for run in runs)))

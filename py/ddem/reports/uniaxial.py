@@ -107,7 +107,7 @@ class Report:
 				continue
 			name, text, unit, factor, form = row
 			values = [summary.get(name) for summary in summaries]
-			if name not in _IF_ANY or any(value is not None for value in values):
+			if name not in _IF_ANY or name == words.strength or any(value is not None for value in values):
 				rows.append((text, unit, [_formatted(value, factor, form) for value in values]))
 		return rows
 

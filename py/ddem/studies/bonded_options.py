@@ -75,8 +75,8 @@ def read_options():
 		choices=("prism", "cylinder", "disc"),
 		default=SUPPRESS,
 		help=(
-			"of the sample; cylinder: the diameter is W; disc: on its side, the diameter is W, its length "
-			f"D {_defaults('shape')}. Cylinders and discs are filled by ddem.packing.fill"
+			"of the sample; cylinder: the diameter is W; disc: on its side, the diameter is W and H, its "
+			f"length D {_defaults('shape')}. Cylinders and discs are filled by ddem.packing.fill"
 		),
 	)
 	sample.add_argument("--seed", type=seed, default=1, help="draws the packing")
@@ -259,10 +259,11 @@ def read_options():
 		("density", density), ("bonded_walls", test.bonded_walls),
 		("velocity", test.velocity), ("strain", test.strain), ("stop", test.stop),
 		("rotational_viscosity", options.viscosity), ("dt", None), ("tensile_strength", None),
-		("shape", test.shape), ("size", test.size), ("scatter", None),
+		("shape", test.shape), ("scatter", None),
 		("wall_stiffness", test.wall_stiffness(options)), *test.own.items()
 	):
 		given.setdefault(name, value)
+	given.setdefault("size", _usual_size(options))
 	options.friction_angle = math.radians(options.phi) if "phi" in given else math.atan(options.tan_phi)
 	check(options, parser)
 	return options, parser
@@ -274,7 +275,7 @@ def check(options, parser):
 	generated = ("size", "radii", "seed", "fails", "packings")
 	if options.particles:
 		for name in generated:
-			usual = TESTS[options.test].size if name == "size" else parser.get_default(name)
+			usual = _usual_size(options) if name == "size" else parser.get_default(name)
 			if getattr(options, name) not in (None, usual):
 				parser.error(
 					f"argument --{name}: it belongs to a generated sample, not to a file of "
@@ -291,6 +292,11 @@ def check(options, parser):
 		parser.error(
 			"argument --box: its second corner must be above the first in x, y and z: "
 			f"got {' '.join(f'{v:g}' for v in options.box)} m"
+		)
+	if options.shape == "disc" and not options.particles and options.size[0] != options.size[1]:
+		parser.error(
+			f"argument --size: a disc of {options.size[0]:g} m has that height as well, not "
+			f"{options.size[1]:g} m: give W and H the same"
 		)
 	test = TESTS[options.test]
 	for other in TESTS.values():
@@ -310,6 +316,12 @@ def check(options, parser):
 	if options.rows < uniaxial.SNAPSHOTS:
 		parser.error(f"argument --rows: {options.rows} must be at least {uniaxial.SNAPSHOTS}")
 	require_writable(parser, "--out", options.out)
+
+
+def _usual_size(options):
+	"""Size of a generated sample, unless told otherwise [m]; a disc is as high as wide."""
+	width, height, depth = TESTS[options.test].size
+	return width, width if options.shape == "disc" else height, depth
 
 
 def _defaults(name):

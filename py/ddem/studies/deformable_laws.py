@@ -1,11 +1,17 @@
 # GPL v2 or later, see LICENSE.
 """Materials of deformable triangles as scripts make them from options: a law is an entry of :data:`LAWS`."""
+import argparse
+import difflib
+import math
 from argparse import SUPPRESS
 from dataclasses import dataclass
 
 from yade import ConcreteDamageMat, DeformableElastMat, O, ScalarDamageMat, VonMisesMat
 
 from .commandline import not_negative, positive
+
+
+_SWITCHES = {"on": True, "off": False}  # values of --set that are no numbers
 
 
 @dataclass(frozen=True)
@@ -86,14 +92,25 @@ def add_options(group):
 		)
 	group.add_argument(
 		"--set", type=assignment, action="append", default=[], metavar="NAME=VALUE",
-		help="any other attribute of the material, in its unit, as damageExponent=1; may be repeated"
+		help=(
+			"any other number of the material, in its unit, as damageExponent=1, or on or off for one that "
+			"is either; may be repeated"
+		)
 	)
 
 
 def assignment(text):
-	"""A name and a number of "name=number"."""
-	name, _, value = text.partition("=")
-	return name.strip(), float(value)
+	"""A name and a value of "name=number", "name=on" or "name=off"."""
+	name, _, value = (part.strip() for part in text.partition("="))
+	if value in _SWITCHES:
+		return name, _SWITCHES[value]
+	try:
+		number = float(value)
+	except ValueError:
+		number = math.nan
+	if not (name and math.isfinite(number)):
+		raise argparse.ArgumentTypeError(f"'{text}' must be NAME=NUMBER, NAME=on or NAME=off")
+	return name, number
 
 
 def check(options, refuse):
@@ -103,14 +120,34 @@ def check(options, refuse):
 		for parameter in law.parameters:
 			if parameter.attribute not in own and hasattr(options, parameter.option.replace("-", "_")):
 				refuse(f"argument --{parameter.option}: it belongs to --law {name}")
-	known = LAWS[options.law].material().dict()
-	for name, _ in options.set:
-		if not isinstance(known.get(name), (int, float)):
-			numbers = ", ".join(sorted(key for key, value in known.items() if isinstance(value, float)))
-			refuse(
-				f"argument --set: {LAWS[options.law].material.__name__} has no number '{name}'; "
-				f"it has {numbers}"
-			)
+	for name, value in options.set:
+		_check_setting(options.law, name, value, refuse)
+
+
+def _check_setting(law, name, value, refuse):
+	"""Call *refuse* with a text about a name and a value of --set that the material cannot take."""
+	material = LAWS[law].material
+	# what says which material it is, as its id and label, is neither
+	known = {key: usual for key, usual in material().dict().items() if isinstance(usual, (float, bool))}
+	own = {parameter.attribute: parameter.option for parameter in LAWS[law].parameters}
+	own.update({key: key for key in ("young", "poisson", "density")})
+	if name in own:
+		refuse(f"argument --set: '{name}' has an option of its own, --{own[name]}")
+	if name not in known:
+		near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+		refuse(
+			f"argument --set: {material.__name__} has no number '{name}'; it has "
+			f"{', '.join(sorted(known.keys() - own.keys()))}"
+			f"{f'. Did you mean {near[0]}?' if near else ''}"
+		)
+	if isinstance(known[name], bool) != isinstance(value, bool):
+		asked = "is on or off" if isinstance(known[name], bool) else "is a number"
+		refuse(f"argument --set: '{name}' of {material.__name__} {asked}, not {said(value)}")
+
+
+def said(value):
+	"""A value of --set as texts have it."""
+	return f"{value:g}" if not isinstance(value, bool) else "on" if value else "off"
 
 
 def append(options):
@@ -129,7 +166,7 @@ def append(options):
 		if given is not None:
 			values[parameter.attribute] = given
 	for name, value in options.set:
-		values[name] = type(getattr(usual, name))(value)
+		values[name] = value
 	material = law.material(label="sample", **values)
 	material.validate() if hasattr(material, "validate") else None
 	O.materials.append(material)

@@ -54,11 +54,18 @@ class Run:
 	wording: Wording = COMPRESSION  # what this kind of test calls what it measures
 	recorded: float = None  # processor time of the recording [s]; None: as by the clock
 	bytes_per_particle: float = None  # see meter.bytes_per_particle; None where it is not known
+	yielded: bool = False  # whether triangles have a plastic strain at the end
 
 	@property
 	def strength(self) -> Strength:
 		"""Measures of the stress–strain curve."""
 		return strength(self.series["strain"], self.series["stress"])
+
+	@property
+	def has_strength(self):
+		"""Whether the largest stress is a strength, or at least a lower bound of one: the stress has fallen
+		from it, or something has broken or yielded. An elastic sample has none."""
+		return self.strength.peaked or self.yielded or bool((self.series["damage"] > 0).any())
 
 	@property
 	def energy_through(self):
@@ -126,7 +133,7 @@ class Run:
 			"stress_at_end_MPa": self.series.last("stress") / 1e6,
 			"energy_error": self.energy_error,
 			"stopped": self.stopped,
-			self.wording.strength: measures.ucs / 1e6,
+			self.wording.strength: measures.ucs / 1e6 if self.has_strength else None,
 			**({self.wording.modulus: measures.young / 1e9} if self.wording.modulus else {}),
 			"effects": self.effects,
 			**self.extra,

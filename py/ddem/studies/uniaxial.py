@@ -54,6 +54,11 @@ class Specimen:
 			return float(np.average(self.sample.damage, weights=self._weights))
 		return self.sample.broken_fraction
 
+	@property
+	def yielded(self):
+		"""Whether triangles have a plastic strain."""
+		return self.deformable and bool(np.any(self.sample.plastic_strain))
+
 	def look(self, loads=()):
 		"""What of a snapshot of this moment must be kept now; *loads*: lines that show them in pictures."""
 		if self.deformable:
@@ -247,7 +252,7 @@ class CompressionTest:
 			energy_error=self.book.largest if self.book else math.nan, stopped=self.stopped,
 			extra=specimen.figures(),
 			test=self.kind, wording=self.wording, broken=specimen.broken, effects=effects().rows(),
-			bytes_per_particle=self._bytes
+			bytes_per_particle=self._bytes, yielded=specimen.yielded
 		)
 
 

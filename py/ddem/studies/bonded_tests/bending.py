@@ -71,7 +71,7 @@ class ThreePointBending(BondedTest):
 	size = (0.050, 0.0125, 0.0125)
 	prism_only = True
 	two_walls = False
-	own = {"span": None, "notch": 0.0}
+	own = {"span": None, "notch": 0.0, "strip": None}
 	record = Bent
 
 	def add_options(self, group):
@@ -85,6 +85,14 @@ class ThreePointBending(BondedTest):
 		group.add_argument(
 			"--notch", type=positive, default=SUPPRESS, metavar="M",
 			help="depth of a notch beneath the load in a bending test: no bond crosses it (default: none)"
+		)
+
+		group.add_argument(
+			"--strip", type=positive, default=SUPPRESS, metavar="M",
+			help=(
+				"width along the beam of supports and load in a bending test; a strip must hold a "
+				"sphere of the face (default: two mean radii, or a tenth of the height if that is more)"
+			)
 		)
 
 	def check(self, options, refuse):
@@ -116,7 +124,7 @@ class ThreePointBending(BondedTest):
 	def load(self, options, sample):
 		options.span = options.span or _SPAN * float(sample.upper[0] - sample.lower[0])
 		bending = bonded.three_point_bending(
-			sample, options.span, options.velocity, options.ramp, stiffness=options.wall_stiffness,
+			sample, options.span, options.velocity, options.ramp, options.strip, options.wall_stiffness,
 			notch=options.notch
 		)
 		return bending, bending

@@ -1,13 +1,16 @@
 # GPL v2 or later, see LICENSE.
 """The Brazilian test: a disc of bonded spheres that is split across a diameter."""
+import math
 from argparse import SUPPRESS
 
 from ... import bonded
-from ...shapes import Cylinder
+from ...disc_stress import hondros, pressed
+from ...shapes import Cylinder, flattened_disc
 from ..wording import Wording
 from .kind import BondedTest, Fracture
 
 _ENDS = ("curved", "flat", "flat-ends")
+_ANGLE = 30.0  # 2α of flat ends [degree]
 
 
 class Split(Fracture):
@@ -48,6 +51,7 @@ class Brazilian(BondedTest):
 	velocity = 0.0625
 	strain = 4e-3
 	shape = "disc"
+	size = (0.010, 0.010, 0.010)
 	own = {"jaws": "flat-ends"}
 	record = Split
 
@@ -69,9 +73,9 @@ class Brazilian(BondedTest):
 			refuse("argument --bonded-walls: jaws of a Brazilian test only push")
 
 	def disc(self, options):
-		if options.jaws == "flat-ends":
-			return super().disc(options)
 		diameter, _, length = options.size
+		if options.jaws == "flat-ends":
+			return flattened_disc(diameter, length, math.radians(_ANGLE))
 		return Cylinder((0, 0, -length / 2), (0, 0, length / 2), diameter / 2)
 
 	def load(self, options, sample):
@@ -91,9 +95,13 @@ class Brazilian(BondedTest):
 				"(ISRM 1978)"
 			),
 			"flat": "on a round disc",
-			"flat-ends": "on a disc with flat ends 30° wide (Wang et al. 2004)",
+			"flat-ends": f"{flat_angle(platens.sample):.3g}° wide, of the disc (Wang et al. 2004)",
 		}
 		return [("jaws", options.jaws.replace("-", " "), meaning[options.jaws])]
+
+	def figures(self, run, platens):
+		angle = flat_angle(platens.sample)
+		return {"angle_degree": angle, "centre_over_nominal": pressed(angle)[0]} if angle else {}
 
 	def notes(self, options, run):
 		said = [
@@ -104,12 +112,27 @@ class Brazilian(BondedTest):
 				"first, it is not: look at the cracks."
 			)
 		]
-		if options.jaws == "flat-ends":
+		if options.jaws == "flat-ends" and "angle_degree" in run.extra:
+			angle = run.extra["angle_degree"]
 			said.append(
-				"The flat ends bring the load in over 30°; the tensile strength is then 0.96 of this "
-				"figure (Wang et al. 2004), which is not taken into account here."
+				f"The flat ends are {angle:.3g}° wide. Jaws that press on them as one make "
+				f"{run.extra['centre_over_nominal']:.3f} of this stress at the centre of an elastic "
+				f"disc, as a rigid punch does; uniform pressure makes {hondros(angle)[0]:.3f} "
+				"(Hondros 1959). The strength above does not take that into account."
+			)
+		if options.jaws == "curved":
+			said.append(
+				"The curved jaws are rigid bodies of 1.5 times the radius of the disc: they touch more "
+				"of it as it flattens. Those of triangles are an arc of nodes that moves as one."
 			)
 		return said
+
+
+def flat_angle(sample):
+	"""Angle 2α that flat ends across y take of a disc, by the height of its box over its width [degree];
+	0: none."""
+	width, height = (float(side) for side in (sample.upper - sample.lower)[:2])
+	return 2 * math.degrees(math.acos(height / width)) if height < width * (1 - 1e-6) else 0.0
 
 
 TEST = Brazilian()

@@ -41,7 +41,9 @@ class Biaxial(DeformableTest):
 		return "Biaxial compression of deformable triangles"
 
 	def figures(self, run, load):
-		return {"deviator_MPa": 1e-6 * (run.strength.ucs - load.pressure)}
+		return {
+			"deviator_MPa": 1e-6 * (run.strength.ucs - load.pressure) if run.has_strength else None
+		}
 
 	def settings(self, options, load):
 		return [

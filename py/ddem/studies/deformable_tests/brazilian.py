@@ -3,7 +3,8 @@
 import dataclasses
 from argparse import SUPPRESS
 
-from ...triangle_jaws import brazilian, brazilian_disc, pressed
+from ...disc_stress import pressed
+from ...triangle_jaws import brazilian, brazilian_disc
 from ..bonded_tests.brazilian import Split
 from ..commandline import positive
 from ..wording import Column
@@ -43,8 +44,9 @@ class Brazilian(DeformableTest):
 			choices=tuple(_ANGLES),
 			default=SUPPRESS,
 			help=(
-				"of a Brazilian test: curved, on a round disc; or on a disc with flat ends (default: "
-				"flat-ends)"
+				"of a Brazilian test: curved, on a round disc, an arc of nodes that moves as one and "
+				"stays as wide, not a jaw of 1.5 times the radius as that of ucs_bonded.py; "
+				"or on a disc with flat ends (default: flat-ends)"
 			),
 		)
 		group.add_argument(
@@ -78,7 +80,7 @@ class Brazilian(DeformableTest):
 	def motion(self, options):
 		return super().motion(options).replace("platen", "jaw")
 
-	def elastic_modulus(self, young, poisson):
+	def elastic_modulus(self, load, young, poisson):
 		return None
 
 	def title(self):
@@ -97,7 +99,7 @@ class Brazilian(DeformableTest):
 		return [("jaws", options.jaws.replace("-", " "), f"{about}, {options.angle:g}° wide, smooth")]
 
 	def notes(self, options, run):
-		return [
+		said = [
 			(
 				"Brazilian. The stress is 2P/(πDt), what line loads make across the loaded diameter "
 				f"of an elastic disc. Jaws {options.angle:g}° wide that move as one make "
@@ -106,6 +108,13 @@ class Brazilian(DeformableTest):
 				"tension only where the disc splits from its middle: look at the damage."
 			)
 		]
+		if options.jaws == "curved":
+			said.append(
+				"A curved jaw is here an arc of nodes that moves as one and stays as wide; that of "
+				"bonded spheres is a rigid body of 1.5 times the disc's radius, which touches more of "
+				"the disc as it flattens (ISRM 1978)."
+			)
+		return said
 
 
 TEST = Brazilian()

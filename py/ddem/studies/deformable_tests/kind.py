@@ -77,8 +77,8 @@ class DeformableTest:
 		"""Speed at which the sample changes its height [m/s]."""
 		return options.velocity * (2 if self.two_platens and options.drive == "both" else 1)
 
-	def elastic_modulus(self, young, poisson):
-		"""Slope of stress over strain of an elastic sample [Pa], see ``modulus``;
+	def elastic_modulus(self, load, young, poisson):
+		"""Slope of stress over strain of an elastic sample under that load [Pa], see ``modulus``;
 		None where there is none."""
 		return plane_strain_modulus(young, poisson)
 

@@ -16,7 +16,7 @@ class Oedometer(DeformableTest):
 	def load(self, options, block):
 		return oedometer(block, options.velocity, options.ramp, options.drive == "both")
 
-	def elastic_modulus(self, young, poisson):
+	def elastic_modulus(self, load, young, poisson):
 		return constrained_modulus(young, poisson)
 
 	def title(self):

@@ -74,7 +74,7 @@ class SimpleShear(DeformableTest):
 	def motion(self, options):
 		return "of the top"
 
-	def elastic_modulus(self, young, poisson):
+	def elastic_modulus(self, load, young, poisson):
 		return young / (2 * (1 + poisson))
 
 	def title(self):
