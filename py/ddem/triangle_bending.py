@@ -123,20 +123,22 @@ class Bending:
 
 
 def plane_strain_deflection(load, span, young, poisson, depth, height):
-	"""Deflection at mid-span of a simply supported elastic beam in plane strain under a load in its middle [m]:
-	P L³/(48 E' I) + P L/(4 κ G A), E' = E/(1−ν²), κ = 5/6 (Timoshenko 1921).
-
-	Limits: stresses about load and supports are not those of a beam. Triangles loaded at one node tend to 0.6 %
-	less where the span is eight heights, to 3 % less where it is four. A load of some width that does not turn
-	stiffens a beam further: 0.25 h wide by 2 % and 4 %.
+	"""Deflection at mid-span of a simply supported elastic beam in plane strain under a load in its middle [m],
+	with the stresses about the load: P L³/(48 E' I) + P L/(b h) (3/(8 G) − 3/(20 E') − 3 ν'/(8 E')) − 0.21 P/(E'
+	b), E' = E/(1−ν²), ν' = ν/(1−ν) (Timoshenko and Goodier, Theory of Elasticity).
 
 	:param load: P [N]
 	:param span: L [m]
 	:param young, poisson: E [Pa], ν [-]
-	:param depth, height: of the section, height along the load [m]
+	:param depth, height: b and h of the section, height along the load [m]
+
+	Limits: of loads at points. Triangles loaded at one node tend to 0.1 % less where the span is eight heights, to
+	0.5 % less where it is four; a load 0.25 h wide that does not turn takes another 2 % and 4 %.
 	"""
-	inertia, area, shear = depth * height**3 / 12, depth * height, young / (2 * (1 + poisson))
-	return load * span**3 * (1 - poisson**2) / (48 * young * inertia) + load * span / (4 * 5 / 6 * shear * area)
+	wide, lateral, shear = young / (1 - poisson**2), poisson / (1 - poisson), young / (2 * (1 + poisson))
+	slender = load * span**3 / (4 * wide * depth * height**3)
+	sheared = load * span / (depth * height) * (3 / (8 * shear) - 3 / (20 * wide) - 3 * lateral / (8 * wide))
+	return slender + sheared - 0.21 * load / (wide * depth)
 
 
 def _place(mesh, point):
