@@ -114,9 +114,9 @@ def test_a_controller_brings_a_random_specimen_to_a_stress_and_crushes_it():
 		O.run(20, True)
 		along.append(-loading.stress[1])
 		across.append(-loading.stress[0])
-	assert book.error < 2e-3
+	assert 0 < book.error < 2e-3  # 0 where a book has nothing from outside
 	O.run(2000, True)
-	assert book.error < 5e-3
+	assert 0 < book.error < 5e-3
 	assert max(along) > 10 * pressure and np.mean(across) == pytest.approx(pressure, rel=0.05)
 	assert 0.2 < sample.broken_fraction < 1
 	# those that broke across the border: their spheres lie on two sides of the cell, and are there where they broke
